@@ -299,6 +299,10 @@ Device::Device(const DeviceOptions& options) : callbacks_(std::make_unique<Callb
 }
 
 Device::~Device() {
+    for (auto& [key, pipeline] : pipelines_) {
+        vkDestroyPipeline(device_, pipeline.pipeline, nullptr);
+        vkDestroyPipelineLayout(device_, pipeline.layout, nullptr);
+    }
     if (device_) vkDestroyDevice(device_, nullptr);
     if (messenger_) {
         auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(

@@ -36,6 +36,14 @@ struct MemoryUse {
     uint64_t now = 0, peak = 0;
 };
 
+// A compute pipeline and what reflection says of its kernel; see program.hpp.
+struct Pipeline {
+    std::string name;
+    VkPipelineLayout layout = VK_NULL_HANDLE;
+    VkPipeline pipeline = VK_NULL_HANDLE;
+    uint32_t workgroup_size = 0, push_constant_bytes = 0;
+};
+
 class Device {
 public:
     // Throws DeviceError in one sentence when there is no loader, no device, or none that is sufficient.
@@ -75,6 +83,9 @@ public:
     uint32_t validation_messages() const;
     bool validation_active() const { return validation_active_; }
 
+    // The pipelines made so far, by name and constants; they live as long as the device.
+    std::map<std::string, Pipeline>& pipelines() { return pipelines_; }
+
 private:
     struct Callbacks;
     std::unique_ptr<Callbacks> callbacks_;
@@ -90,6 +101,7 @@ private:
     double timestamp_period_ns_ = 0;
     uint64_t memory_limit_ = 0, memory_now_ = 0;
     std::map<std::string, MemoryUse> memory_;
+    std::map<std::string, Pipeline> pipelines_;
 };
 
 // Throws DeviceError "WHAT failed (VK_…)", or OutOfMemory, when a Vulkan call did not succeed.

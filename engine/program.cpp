@@ -48,24 +48,20 @@ Interface reflect(const uint32_t* begin, const uint32_t* end) {
     return out;
 }
 
-}  // namespace
-
-Program::Program(Device& device, const KernelTable& table, const std::string& name, Constants constants)
-    : device_(&device), name_(name) {
+Pipeline make_pipeline(Device& device, const KernelTable& table, const std::string& name, Constants constants) {
     const auto kernel = std::find_if(table.begin(), table.end(), [&](auto& k) { return name == k.name; });
     if (kernel == table.end()) {
         std::fprintf(stderr, "no embedded kernel is called \"%s\"\n", name.c_str());
         std::abort();
     }
     const Interface interface = reflect(kernel->begin, kernel->end);
-    workgroup_size_ = interface.workgroup_size;
-    push_constant_bytes_ = interface.push_constant_bytes;
-    if (interface.size_is_constant_0) {
-        auto [it, fresh] = constants.try_emplace(0, workgroup_size_);
-        workgroup_size_ = it->second;
-    }
+    Pipeline out;
+    out.name = name;
+    out.workgroup_size = interface.workgroup_size;
+    out.push_constant_bytes = interface.push_constant_bytes;
+    assert(out.push_constant_bytes <= device.info().limits.at("maxPushConstantsSize"));
+    if (interface.size_is_constant_0) out.workgroup_size = constants.try_emplace(0, out.workgroup_size).first->second;
     constants.try_emplace(1, device.plain_groups() ? 1 : 0);
-    assert(push_constant_bytes_ <= device.info().limits.at("maxPushConstantsSize"));
 
     std::vector<VkSpecializationMapEntry> entries;
     std::vector<uint32_t> values;
@@ -75,37 +71,39 @@ Program::Program(Device& device, const KernelTable& table, const std::string& na
     }
     const VkSpecializationInfo specialization{uint32_t(entries.size()), entries.data(), values.size() * sizeof(uint32_t), values.data()};
 
-    VkPushConstantRange range{VK_SHADER_STAGE_COMPUTE_BIT, 0, (push_constant_bytes_ + 3) & ~3u};
+    const VkPushConstantRange range{VK_SHADER_STAGE_COMPUTE_BIT, 0, (out.push_constant_bytes + 3) & ~3u};
     VkPipelineLayoutCreateInfo layout{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
     layout.pushConstantRangeCount = range.size ? 1 : 0;
     layout.pPushConstantRanges = &range;
-    check(vkCreatePipelineLayout(device.handle(), &layout, nullptr, &layout_), "creating a pipeline layout");
+    check(vkCreatePipelineLayout(device.handle(), &layout, nullptr, &out.layout), "creating a pipeline layout");
 
     VkShaderModuleCreateInfo code{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
     code.codeSize = size_t(kernel->end - kernel->begin) * sizeof(uint32_t);
     code.pCode = kernel->begin;
     VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
-    info.layout = layout_;
+    info.layout = out.layout;
     info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
     info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
     info.stage.pName = "main";
     info.stage.pSpecializationInfo = &specialization;
     check(vkCreateShaderModule(device.handle(), &code, nullptr, &info.stage.module), "creating a shader module");
-    const VkResult result = vkCreateComputePipelines(device.handle(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline_);
+    const VkResult result = vkCreateComputePipelines(device.handle(), VK_NULL_HANDLE, 1, &info, nullptr, &out.pipeline);
     vkDestroyShaderModule(device.handle(), info.stage.module, nullptr);
     check(result, ("compiling kernel \"" + name + "\"").c_str());
-    device.set_name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<uint64_t>(pipeline_), name_);
-    device.set_name(VK_OBJECT_TYPE_PIPELINE_LAYOUT, reinterpret_cast<uint64_t>(layout_), name_);
+    device.set_name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<uint64_t>(out.pipeline), name);
+    device.set_name(VK_OBJECT_TYPE_PIPELINE_LAYOUT, reinterpret_cast<uint64_t>(out.layout), name);
+    return out;
 }
 
-Program::Program(Program&& other) noexcept
-    : device_(other.device_), name_(std::move(other.name_)), layout_(std::exchange(other.layout_, VK_NULL_HANDLE)),
-      pipeline_(std::exchange(other.pipeline_, VK_NULL_HANDLE)), workgroup_size_(other.workgroup_size_),
-      push_constant_bytes_(other.push_constant_bytes_) {}
+}  // namespace
 
-Program::~Program() {
-    vkDestroyPipeline(device_->handle(), pipeline_, nullptr);
-    vkDestroyPipelineLayout(device_->handle(), layout_, nullptr);
+Program::Program(Device& device, const KernelTable& table, const std::string& name, Constants constants) {
+    std::string key = name;
+    for (auto [id, value] : constants) key += "|" + std::to_string(id) + "=" + std::to_string(value);
+    auto found = device.pipelines().find(key);
+    if (found == device.pipelines().end())
+        found = device.pipelines().emplace(key, make_pipeline(device, table, name, std::move(constants))).first;
+    pipeline_ = &found->second;
 }
 
 }  // namespace myriad::engine

@@ -29,7 +29,7 @@ struct Ref {
 inline float uintBitsToFloat(uint v) { float f; std::memcpy(&f, &v, 4); return f; }
 inline uint floatBitsToUint(float v) { uint u; std::memcpy(&u, &v, 4); return u; }
 using glm::abs, glm::clamp, glm::cross, glm::dot, glm::floor, glm::max, glm::min, glm::normalize, glm::mix;
-using std::sqrt;
+using std::pow, std::sqrt;
 }  // namespace myriad
 
 #define MYRIAD_BEGIN namespace myriad {

@@ -1,0 +1,60 @@
+#include "compute/manylods/manylods.hpp"
+
+#include "compute/kernels.hpp"
+
+namespace myriad::compute {
+
+using engine::compute_kernels;
+
+namespace {
+
+// The root's block holds what is left when the binary levels are taken by threes.
+uint32_t root_children(const Bsh& tree) {
+    const uint32_t rest = tree.depth() % bsh_arity_log2;
+    return rest || tree.depth() == 0 ? 1u << rest : bsh_arity;
+}
+
+}  // namespace
+
+ManyLods::ManyLods(engine::Device& device)
+    : seed_(device, compute_kernels, "manylods/seed"), open_(device, compute_kernels, "manylods/open"),
+      walk_(device, compute_kernels, "manylods/walk") {}
+
+void ManyLods::record(engine::Recorder& recorder, AppendLists& lists, const ManyLodsInputs& in) const {
+    assert(in.first_view + in.limit <= cut_max_views && in.tree.blocks() < cut_max_blocks);
+    auto push = [&](const AppendRef& ref) {
+        return ManyLodsPush{.lists = ref,
+                            .tree = in.tree.read(recorder),
+                            .views = recorder.read(in.views),
+                            .epsilon = in.epsilon,
+                            .map_size = in.map_size,
+                            .first_view = in.first_view};
+    };
+    const uint32_t limit = in.tree.empty() ? 0 : in.limit;
+    lists.begin(recorder, seed_, in.view_count, in.first_view, limit);
+    if (limit > 0) {
+        lists.step(recorder, seed_, root_children(in.tree), push);
+        for (uint32_t level = 0; level < in.tree.levels(); ++level) lists.step(recorder, open_, bsh_arity, push);
+    }
+    lists.end(recorder);
+}
+
+void ManyLods::record_walk(engine::Recorder& recorder, const engine::Array<uvec2>& kept, const engine::Array<uint>& state,
+                           const ManyLodsInputs& in) const {
+    recorder.fill(state, 0);
+    if (in.tree.empty()) return;
+    recorder.dispatch(walk_,
+                      WalkPush{.tree = in.tree.read(recorder),
+                               .views = recorder.read(in.views),
+                               .kept = recorder.write(kept),
+                               .state = {recorder.write(state).address},
+                               .count = recorder.read(in.view_count),
+                               .epsilon = in.epsilon,
+                               .map_size = in.map_size,
+                               .kept_capacity = uint(kept.count()),
+                               .first_view = in.first_view,
+                               .limit = in.limit},
+                      in.limit);
+}
+
+}  // namespace myriad::compute

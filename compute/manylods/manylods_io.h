@@ -1,0 +1,52 @@
+// What the ManyLoDs kernels and their host share.
+#ifndef MYRIAD_COMPUTE_MANYLODS_IO_H
+#define MYRIAD_COMPUTE_MANYLODS_IO_H
+
+#include "compute/append/append_io.h"
+#include "compute/bsh/bsh_io.h"
+#include "compute/manylods/cut_io.h"
+#include "compute/views/paraboloid.h"
+
+MYRIAD_BEGIN
+// "manylods/seed" and "manylods/open".
+struct ManyLodsPush {
+    AppendRef lists;     // active and next: (block, view), an inner node to open; kept: groups of the cut
+    BshRef tree;
+    Views views;
+    float epsilon;       // texels: a node-view is valid when its criterion is below
+    uint map_size;       // texels a side of a half map
+    uint first_view;     // seed: the view of item 0
+};
+
+// "manylods/walk": one depth-first walk a view.
+struct WalkPush {
+    BshRef tree;
+    Views views;
+    Uint2s kept;
+    AppendStates state;
+    Uints count;
+    float epsilon;
+    uint map_size;
+    uint kept_capacity;
+    uint first_view, limit;
+};
+
+// Where one node-view goes (ManyLoDs 3.1, on the exact stereographic size of the spec).
+const uint node_view_open = 0u;
+const uint node_view_drawn = 1u;
+const uint node_view_culled = 2u;
+MYRIAD_FN uint classify(View view, Sphere sphere, bool leaf, float epsilon, uint map_size) {
+    const vec3 d = sphere.center - view.position;
+    if (outside_frustum(view, d, sphere.radius)) return node_view_culled;
+    return leaf || criterion(d, sphere.radius, map_size) < epsilon ? node_view_drawn : node_view_open;
+}
+
+// The children of one block in one view: drawn | culled << 8 | open << 16, a bit a slot.
+MYRIAD_FN uint classify_child(View view, vec4 frame, uvec2 code, bool leaf, float epsilon, uint map_size) {
+    if (bsh_is_absent(code)) return 0u;
+    const uint where = classify(view, bsh_decode(frame, code), leaf, epsilon, map_size);
+    return where == node_view_drawn ? 0x1u : where == node_view_culled ? 0x100u : 0x10000u;
+}
+MYRIAD_END
+
+#endif

@@ -1,0 +1,46 @@
+// The plain CPU twin: a sequential recursion over the same tree, view by view.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "compute/bsh/bsh.hpp"
+#include "compute/manylods/manylods_io.h"
+
+namespace myriad::compute {
+
+// The tree's arrays, as read back from the device.
+struct HostTree {
+    std::vector<vec4> frames;
+    std::vector<uvec2> spheres;
+    uint leaves = 0, blocks = 0;
+
+    HostTree() = default;
+    HostTree(engine::Device& device, const Bsh& tree);
+    Sphere sphere(uint slot) const { return bsh_decode(frames[slot / 8], spheres[slot]); }
+    bool absent(uint slot) const { return bsh_is_absent(spheres[slot]); }
+    uint root() const { return 8 * blocks; }
+};
+
+// One node-view of a cut; ordered by view, then slot.
+struct NodeView {
+    uint view, slot;
+    bool culled;
+    auto operator<=>(const NodeView&) const = default;
+};
+void PrintTo(const NodeView& nv, std::ostream* out);
+
+struct CutRef {
+    std::vector<NodeView> cut;  // sorted
+    uint64_t tested = 0;        // node-views
+};
+CutRef cut_ref(const HostTree& tree, const std::vector<View>& views, float epsilon, uint map_size);
+
+// A cut's groups, taken apart and sorted.
+std::vector<NodeView> node_views(const std::vector<uvec2>& groups);
+
+// The first violation of the partition invariant (spec, section 3): every leaf has exactly one ancestor-or-self in the cut of
+// every view. Empty: none.
+std::string partition_violation(const HostTree& tree, const std::vector<NodeView>& cut, uint views);
+
+}  // namespace myriad::compute
