@@ -1,0 +1,14 @@
+// glTF 2.0, .gltf and .glb.
+#pragma once
+
+#include <string>
+
+#include "scenes/scene.hpp"
+
+namespace myriad::scenes {
+
+// Throws InputError (file, place, cure) for whatever is wrong with the file; what is merely unsupported and harmless
+// becomes one of the scene's warnings.
+Scene load_gltf(const std::string& path);
+
+}  // namespace myriad::scenes

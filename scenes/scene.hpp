@@ -1,0 +1,106 @@
+// What is rendered: meshes, instances, materials, lights and cameras, on the host, in the terms of glTF 2.0.
+//
+// Lengths are metres, +Y is up, right-handed. Radiance is linear; colours of textures are decoded where they are read.
+// glTF's photometric units are taken as radiometric 1:1 (spec, section 5): point and spot intensity in W/sr,
+// directional light in W/m^2.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+namespace myriad::scenes {
+
+inline constexpr uint32_t none = ~0u;  // "no texture", "no material" …
+
+struct Texture {
+    std::string name;
+    uint32_t width = 0, height = 0;
+    std::vector<uint8_t> rgba;  // width * height * 4, row 0 at v = 0
+    enum class Wrap : uint32_t { repeat, clamp, mirror } wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+};
+
+struct Material {
+    std::string name;
+    glm::vec4 base_color{1};           // linear; multiplies the texture
+    float metallic = 1, roughness = 1;
+    glm::vec3 emissive{0};             // radiance, W/(m^2 sr); multiplies the texture
+    uint32_t base_color_texture = none;          // sRGB
+    uint32_t metallic_roughness_texture = none;  // linear; G roughness, B metallic
+    uint32_t emissive_texture = none;            // sRGB
+    bool double_sided = false;
+};
+
+struct Primitive {
+    std::vector<glm::vec3> positions;
+    std::vector<glm::vec3> normals;     // unit; empty: flat shading from the geometry
+    std::vector<glm::vec2> texcoords;   // empty: (0, 0)
+    std::vector<uint32_t> indices;      // three a triangle, always present, always in range
+    uint32_t material = 0;
+};
+
+struct Mesh {
+    std::string name;
+    std::vector<Primitive> primitives;
+};
+
+struct Instance {
+    uint32_t mesh = 0;
+    glm::mat4 to_world{1};
+};
+
+struct Camera {
+    std::string name;
+    glm::mat4 to_world{1};        // looks along -Z, +Y up, as in glTF
+    float yfov = 0.8f;            // radians, the full vertical angle
+};
+
+struct Light {
+    enum class Type : uint32_t { point, spot, directional } type = Type::point;
+    std::string name;
+    glm::vec3 position{0};        // world
+    glm::vec3 direction{0, 0, -1};// world, unit, the way the light travels
+    glm::vec3 intensity{0};       // colour times intensity: W/sr (point, spot) or W/m^2 (directional)
+    float inner_cone = 0, outer_cone = 0.785398f;  // spot: half-angles, radians
+};
+
+struct Scene {
+    std::string name;             // as the user gave it: a path or "builtin:NAME"
+    std::vector<Mesh> meshes;
+    std::vector<Instance> instances;
+    std::vector<Material> materials;   // never empty: a scene without materials gets glTF's default material
+    std::vector<Texture> textures;
+    std::vector<Light> lights;
+    std::vector<Camera> cameras;       // may be empty: see framing_camera()
+    std::vector<std::string> warnings; // harmless defects that were repaired or ignored, one sentence each
+};
+
+// All triangles of the scene in world space, in one index space: what goes to the device.
+struct Triangles {
+    std::vector<glm::vec3> positions, normals;   // one a vertex; normals are unit
+    std::vector<glm::vec2> texcoords;            // one a vertex
+    std::vector<glm::uvec4> triangles;           // three vertex indices, then the material
+    glm::vec3 lo{0}, hi{0};                      // bounds of all positions; lo == hi == 0 when empty
+};
+
+// Applies instance transforms, computes missing normals, drops triangles with a non-finite vertex (counted in a warning
+// that is appended to `scene.warnings`). Zero-area triangles stay: they are harmless downstream and keep indices stable.
+Triangles flatten(Scene& scene);
+
+// A camera that sees the whole scene, for scenes without one.
+Camera framing_camera(const Triangles& triangles);
+
+// `name`: a camera's name or its index in decimal; empty: the first camera, or the framing camera when there is none.
+// Throws InputError naming the cameras that exist.
+Camera pick_camera(const Scene& scene, const Triangles& triangles, const std::string& name);
+
+// `source`: a path to a .gltf or .glb file, or "builtin:NAME[?key=value&…]". Throws InputError.
+Scene load(const std::string& source, uint32_t seed = 1);
+
+// One line a built-in scene, for `-h`.
+std::vector<std::string> builtin_names();
+
+}  // namespace myriad::scenes
