@@ -1,0 +1,65 @@
+// How far one image is from another. Every metric is the formula below and nothing else; r is the reference, t the test,
+// linear radiance; sums run in double over all pixels and the channels R, G, B.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tools/image.hpp"
+
+namespace myriad::tools {
+
+struct NonFinite {
+    uint64_t nan = 0, inf = 0;  // values, not pixels
+    uint32_t x = 0, y = 0;      // the first pixel that has one, in row order
+    uint64_t total() const { return nan + inf; }
+};
+
+struct Metrics {
+    double mse = 0;      // mean of (t - r)^2
+    double rel_mse = 0;  // mean of (t - r)^2 / (r^2 + 1e-2)
+    // -10 log10(mean of (t' - r')^2), dB, where ' clamps to [0, 1] and encodes as sRGB: radiance has no peak, a display
+    // has (1), and errors count about as they are seen. Capped at 200 dB, beyond what floats resolve, so that identical
+    // images have a number.
+    double psnr = 0;
+    // Wang et al. 2004 on the luma 0.2126 R' + 0.7152 G' + 0.0722 B': Gaussian window 11x11, sigma 1.5, K1 = 0.01,
+    // K2 = 0.03, L = 1, mean over the windows that lie inside the image. Below 11 pixels a side the window shrinks to it.
+    double ssim = 0;
+    double mae = 0;      // mean of |t - r|
+    double max_abs = 0;  // max of |t - r|
+    double p95_abs = 0;  // 95th percentile, nearest rank, over pixels of the greatest |t - r| of the three channels
+    double failing = 0;  // share of pixels whose greatest |t - r| exceeds `tolerance`
+    // Share of r above 1, to which PSNR and SSIM are blind: near 1 they say nothing.
+    double clipped = 0;
+
+    double tolerance = 0;
+    NonFinite reference, test;
+
+    // NaN or Inf anywhere is a failure whatever the metrics, which are then all NaN.
+    bool finite() const { return reference.total() + test.total() == 0; }
+};
+
+// The metrics by their names in `compare` (its table, its JSON, its limits), in the order to print them.
+struct MetricName {
+    const char* name;
+    double Metrics::*value;
+    const char* meaning;
+};
+std::span<const MetricName> metric_names();
+
+// InputError when the sizes differ or an image lacks the layer (Image::rgb). `tolerance` is in the unit of the layer.
+Metrics measure(const Image& reference, const Image& test, double tolerance, std::string_view layer = "");
+
+// |t - r| as an image with channels R, G, B; errors as for measure.
+Image absolute_difference(const Image& reference, const Image& test, std::string_view layer = "");
+
+// The greatest channel of each pixel (NaN and Inf win).
+std::vector<float> greatest_channel(const Image::Rgb& rgb);
+
+// Nearest rank: the least value v with at least `share` of the values <= v. Values finite, not empty; 0 < share <= 1.
+double percentile(std::vector<float> values, double share);
+
+}  // namespace myriad::tools
