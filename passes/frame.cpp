@@ -1,1 +1,132 @@
-// frame
+#include "passes/frame.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/transfer.hpp"
+
+namespace myriad::passes {
+
+namespace {
+
+// Pixels in a block's side so that each gathers about `subset` of the VPLs.
+uint32_t block_for(uint32_t vpls, uint32_t subset) {
+    if (subset == 0 || subset >= vpls) return 1;
+    return std::min(uint32_t(std::ceil(std::sqrt(double(vpls) / subset))), 16u);
+}
+
+double total_area(const scenes::Triangles& t) {
+    double area = 0;
+    for (const glm::uvec4& i : t.triangles) {
+        const glm::dvec3 a = t.positions[i.x], b = t.positions[i.y], c = t.positions[i.z];
+        area += 0.5 * glm::length(glm::cross(b - a, c - a));
+    }
+    return area;
+}
+
+GatherVisibility gather_visibility(Visibility v) {
+    return v == Visibility::manylods ? GatherVisibility::maps : v == Visibility::rays ? GatherVisibility::rays : GatherVisibility::none;
+}
+
+}  // namespace
+
+Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles, const FrameSettings& settings)
+    : device_(device), settings_(settings), recorder_(device), geometry_(device, scene, triangles), lights_(device, scene, triangles),
+      bvh_(device, triangles.positions, triangles.triangles), gbuffer_(device, settings.width, settings.height),
+      compose_(device, settings.width, settings.height),
+      exhausted_(device, "frame", "exhausted walks", 1), host_words_(device, "frame", "frame words", 2, engine::Location::host) {
+    const glm::vec3 far = glm::max(glm::abs(triangles.lo), glm::abs(triangles.hi));
+    reach_ = std::max({far.x, far.y, far.z});
+    const double area = total_area(triangles);
+    vpl_bound_ = settings.vpl_bound > 0 ? settings.vpl_bound : area > 0 ? float(std::min(3.14159265 * settings.vpls / area, 1e30)) : 1e30f;
+    block_ = block_for(settings.vpls, settings.subset);
+    size_.triangles = triangles.triangles.size();
+    size_.lights = lights_.count();
+    size_.bvh_nodes = bvh_.nodes();
+
+    if (DirectPass::needed(lights_)) direct_.emplace(device, settings.width, settings.height);
+    if (lights_.power() == 0 || settings.vpls == 0 || triangles.triangles.empty()) return;
+    vpl_.emplace(device, settings.vpls);
+    vpl_->paths(lights_, settings.bounces);  // throws when no path fits
+    gather_.emplace(device, gather_visibility(settings.visibility), settings.width, settings.height);
+    if (settings.filter && block_ > 1) filter_.emplace(device, settings.width, settings.height);
+    if (settings.visibility != Visibility::manylods) return;
+    report("sampling the surface and sorting the samples", 0);
+    tree_.emplace(device, triangles.positions, triangles.triangles, settings.log2_samples, settings.seed);
+    size_.samples = tree_->leaves();
+    size_.bsh_blocks = tree_->blocks();
+    maps_.emplace(device, settings.maps, settings.vpls, block_ * block_);
+    auto scope = recorder_.scope("refit");
+    tree_->refit(recorder_, geometry_.positions(), geometry_.triangles());
+}
+
+void Frame::report(const std::string& stage, double done) const {
+    if (settings_.progress) settings_.progress(stage, done);
+}
+
+void Frame::render(const scenes::Camera& camera) {
+    counters_ = {};
+    const float pixel_angle = 2 * std::tan(camera.yfov / 2) / float(settings_.height);
+    {
+        auto scope = recorder_.scope("gbuffer");
+        gbuffer_.record(recorder_, geometry_, bvh_, camera);
+    }
+    if (direct_) {
+        auto scope = recorder_.scope("direct");
+        direct_->record(recorder_, gbuffer(), bvh_, lights_);
+    }
+    if (vpl_) {
+        auto scope = recorder_.scope("vpls");
+        vpl_->record(recorder_, geometry_, bvh_, lights_, settings_.bounces, settings_.seed);
+        recorder_.copy(vpl_->count(), host_words_, sizeof(uint));
+    }
+    if (vpl_) gather_indirect(pixel_angle);
+    const engine::Array<vec4>* irradiance = !vpl_ ? nullptr : filter_ ? &filter_->filtered() : &gather_->irradiance();
+    {
+        auto scope = recorder_.scope("compose");
+        compose_.record(recorder_, gbuffer(), irradiance, direct());
+    }
+    recorder_.submit_and_wait();
+    if (vpl_) counters_.vpls = host_words_.span()[0];
+    if (maps_) counters_.maps = maps_->take_counters();
+    times_ = recorder_.take_times();
+    report("done", 1);
+}
+
+// The many views: their maps, batch by batch, and what their VPLs bring to each pixel.
+void Frame::gather_indirect(float pixel_angle) {
+    const GatherInputs in{gbuffer(), vpl_->vpls(), vpl_->count(), block_, vpl_bound_};
+    const uint32_t views = settings_.vpls;
+    for (bool fitted = false; !fitted;) {
+        fitted = true;
+        gather_->clear(recorder_);
+        const uint32_t batch = maps_ ? maps_->batch() : std::max(gather_->max_vpls(block_), 1u);
+        for (uint32_t first = 0; first < views && fitted; first += batch) {
+            if (maps_) maps_->record(recorder_, *tree_, vpl_->views(), vpl_->count(), first);
+            {
+                auto scope = recorder_.scope("gather");
+                if (settings_.visibility == Visibility::rays)
+                    gather_->record_rays(recorder_, in, first, batch, bvh_, reach_, exhausted_);
+                else
+                    gather_->record_maps(recorder_, in, first, batch, maps_ ? &maps_->atlas() : nullptr, settings_.maps.map_size, settings_.bias);
+            }
+            recorder_.submit_and_wait();  // a batch a submission: progress, and no time-out on devices that watch
+            if (maps_) fitted = maps_->accept();
+            report("gathering", std::min(1.0, double(first + batch) / views));
+        }
+    }
+    if (filter_) {
+        auto scope = recorder_.scope("filter");
+        filter_->record(recorder_, gbuffer(), gather_->irradiance(), block_, pixel_angle);
+    }
+}
+
+std::vector<uint> Frame::tonemapped(float exposure) {
+    if (!tonemap_) tonemap_.emplace(device_, uint64_t(settings_.width) * settings_.height);
+    tonemap_->record(recorder_, beauty(), exposure);
+    recorder_.submit_and_wait();
+    recorder_.take_times();
+    return engine::download(device_, tonemap_->pixels());
+}
+
+}  // namespace myriad::passes

@@ -106,6 +106,7 @@ AppendReport AppendLists::report() const {
     report.next_needed = s.next_needed;
     report.kept_needed = s.kept_needed;
     report.processed = uint64_t(s.processed[1]) << 32 | s.processed[0];
+    report.opened = uint64_t(s.opened[1]) << 32 | s.opened[0];
     report.next_overflowed = s.failed & append_next_overflow;
     report.kept_overflowed = s.failed & append_kept_overflow;
     return report;

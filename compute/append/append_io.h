@@ -18,6 +18,7 @@ struct AppendState {
     uint kept_needed;
     uint sums;          // entries of AppendRef.sums that this step fills (scan mode)
     uint processed[2];  // items read by all steps, each times its step's weight; low and high word
+    uint opened[2];     // items that were appended to next lists by all steps
 };
 MYRIAD_ARRAY(AppendStates, AppendState, 4)
 

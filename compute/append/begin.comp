@@ -16,6 +16,8 @@ void main() {
     s.kept_needed = 0u;
     s.processed[0] = s.items;
     s.processed[1] = 0u;
+    s.opened[0] = 0u;
+    s.opened[1] = 0u;
     s.sums = 2u * ((s.items + push.group_size - 1u) / push.group_size);
     push.state.at[0] = s;
     push.args.at[0] = grid_of((s.items + push.workgroup_size - 1u) / push.workgroup_size);

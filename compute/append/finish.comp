@@ -22,6 +22,8 @@ void main() {
     const uint before = s.processed[0];
     s.processed[0] += s.items * push.weight;  // an active list is at most 2^28 long
     if (s.processed[0] < before) s.processed[1] += 1u;
+    s.opened[0] += s.items;
+    if (s.opened[0] < s.items) s.opened[1] += 1u;
     s.sums = 2u * ((s.items + push.group_size - 1u) / push.group_size);
     push.state.at[0] = s;
     push.args.at[0] = grid_of((s.items + push.workgroup_size - 1u) / push.workgroup_size);

@@ -1,0 +1,88 @@
+#include "compute/bsh/bsh.hpp"
+
+#include <chrono>
+
+#include "compute/bsh/bsh_order.hpp"
+#include "compute/kernels.hpp"
+#include "compute/surface_sampling/surface_sampling.hpp"
+#include "engine/transfer.hpp"
+
+namespace myriad::compute {
+
+using engine::compute_kernels;
+
+std::vector<BshLevel> bsh_levels(uint leaves) {
+    std::vector<BshLevel> levels{{leaves, 0}};
+    do {
+        const BshLevel below = levels.back();
+        levels.push_back({below.blocks(), below.first_slot + 8 * below.blocks()});
+    } while (levels.back().nodes > 1);
+    return levels;
+}
+
+Bsh::Bsh(engine::Device& device, std::span<const glm::vec3> positions, std::span<const glm::uvec4> triangles, uint32_t log2_samples,
+         uint32_t seed)
+    : leaves_(device, compute_kernels, "bsh/leaves"), inner_(device, compute_kernels, "bsh/inner"), depth_(log2_samples) {
+    assert(log2_samples <= 28 && "slots are 32-bit");
+    using Clock = std::chrono::steady_clock;
+    auto ms_since = [](Clock::time_point start) { return std::chrono::duration<double, std::milli>(Clock::now() - start).count(); };
+
+    const auto begin = Clock::now();
+    const SurfaceSampling sampling = sample_surface(positions, triangles, log2_samples, seed);
+    sampling_ms_ = ms_since(begin);
+    if (sampling.empty()) return;
+    sample_radius_ = sampling.radius;
+    area_ = sampling.area;
+
+    const auto sampled = Clock::now();
+    std::vector<glm::vec3> points(sampling.samples.size());
+    for (size_t i = 0; i < points.size(); ++i) {
+        const SurfaceSample& s = sampling.samples[i];
+        const glm::uvec4 t = triangles[s.triangle];
+        points[i] = bsh_position(positions[t.x], positions[t.y], positions[t.z], s.u, s.v);
+    }
+    std::vector<SurfaceSample> leaves(points.size());
+    const std::vector<uint32_t> order = bsh_order(points);
+    for (size_t i = 0; i < leaves.size(); ++i) leaves[i] = sampling.samples[order[i]];
+    ordering_ms_ = ms_since(sampled);
+
+    levels_ = bsh_levels(uint(leaves.size()));
+    samples_ = engine::upload(device, "scene", "samples", leaves);
+    frames_ = {device, "scene", "BSH frames", blocks() + 1};
+    merged_ = {device, "scene", "BSH merged spheres", blocks()};
+    spheres_ = {device, "scene", "BSH spheres", slots()};
+    cones_ = {device, "scene", "BSH cones", slots()};
+}
+
+void Bsh::refit(engine::Recorder& recorder, const engine::Array<vec3>& positions, const engine::Array<uvec4>& triangles) {
+    for (size_t i = 0; i < levels_.size(); ++i) {
+        const BshLevel& level = levels_[i];
+        recorder.dispatch(i == 0 ? leaves_ : inner_,
+                          BshLevelPush{.frames = recorder.write(frames_),
+                                       .spheres = recorder.write(spheres_),
+                                       .cones = recorder.write(cones_),
+                                       .merged = recorder.write(merged_),
+                                       .samples = recorder.read(samples_),
+                                       .triangles = recorder.read(triangles),
+                                       .positions = recorder.read(positions),
+                                       .leaf_radius = sample_radius_,
+                                       .nodes = level.nodes,
+                                       .first_slot = level.first_slot,
+                                       .first_child_block = i == 0 ? 0 : levels_[i - 1].first_block(),
+                                       .first_owner = i + 1 < levels_.size() ? levels_[i + 1].first_slot : 0},
+                          level.blocks());
+    }
+}
+
+BshRef Bsh::read(engine::Recorder& recorder) const {
+    assert(!empty());
+    return {.frames = recorder.read(frames_),
+            .spheres = recorder.read(spheres_),
+            .cones = recorder.read(cones_),
+            .leaves = leaves(),
+            .blocks = blocks()};
+}
+
+uint64_t Bsh::bytes() const { return samples_.bytes() + frames_.bytes() + merged_.bytes() + spheres_.bytes() + cones_.bytes(); }
+
+}  // namespace myriad::compute

@@ -1,0 +1,63 @@
+// The bounding-sphere hierarchy of a scene; see README.md and bsh_io.h.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "compute/bsh/bsh_build.h"
+#include "compute/bsh/bsh_io.h"
+#include "engine/recorder.hpp"
+
+namespace myriad::compute {
+
+// The levels of the 8-ary tree from the leaves to the root, which is a level of its own.
+struct BshLevel {
+    uint nodes, first_slot;
+    uint blocks() const { return (nodes + 7) / 8; }
+    uint first_block() const { return first_slot / 8; }
+};
+std::vector<BshLevel> bsh_levels(uint leaves);
+
+class Bsh {
+public:
+    // Samples the surface at 2^log2_samples points and finds the topology, on the host. Bounds come with refit.
+    // A scene without triangles gives an empty() hierarchy, which has no leaves and must not be read.
+    Bsh(engine::Device& device, std::span<const glm::vec3> positions, std::span<const glm::uvec4> triangles, uint32_t log2_samples,
+        uint32_t seed);
+
+    // Computes all bounds for these positions: a dispatch a level, nothing read back. `triangles` are those sampled.
+    void refit(engine::Recorder& recorder, const engine::Array<vec3>& positions, const engine::Array<uvec4>& triangles);
+
+    // For a kernel that walks the tree.
+    BshRef read(engine::Recorder& recorder) const;
+
+    bool empty() const { return levels_.empty(); }
+    uint leaves() const { return empty() ? 0 : levels_.front().nodes; }
+    uint blocks() const { return empty() ? 0 : levels_.back().first_block(); }  // without the one over the root
+    uint slots() const { return empty() ? 0 : 8 * (blocks() + 1); }
+    uint root() const { return 8 * blocks(); }                                   // its slot
+    uint depth() const { return depth_; }                                       // of the binary tree: leaves = 2^depth
+    uint levels() const { return empty() ? 0 : uint(levels_.size()) - 1; }      // opening steps from the root to the leaves
+    float sample_radius() const { return sample_radius_; }
+    double area() const { return area_; }
+    const engine::Array<SurfaceSample>& samples() const { return samples_; }    // in leaf order
+    const engine::Array<vec4>& frames() const { return frames_; }
+    const engine::Array<uvec2>& spheres() const { return spheres_; }
+    const engine::Array<uint>& cones() const { return cones_; }
+    uint64_t bytes() const;
+    double sampling_ms() const { return sampling_ms_; }  // host time of construction
+    double ordering_ms() const { return ordering_ms_; }
+
+private:
+    engine::Program leaves_, inner_;
+    uint depth_;
+    std::vector<BshLevel> levels_;
+    float sample_radius_ = 0;
+    double area_ = 0, sampling_ms_ = 0, ordering_ms_ = 0;
+    engine::Array<SurfaceSample> samples_;
+    engine::Array<vec4> frames_, merged_;
+    engine::Array<uvec2> spheres_;
+    engine::Array<uint> cones_;
+};
+
+}  // namespace myriad::compute

@@ -1,0 +1,24 @@
+// What both levels' kernels end with: a block and its owner are written from the block's eight children.
+#include "engine/kernel.glsl"
+#include "compute/bsh/bsh_build.h"
+layout(push_constant, scalar) uniform Push { BshLevelPush push; };
+
+// Of a block that has fewer than eight children, the last is repeated: it changes no bound.
+uint child_of(uint block, uint i) { return min(8u * block + i, push.nodes - 1u); }
+
+void write_block(uint block, BshSpheres spheres, BshCones cones) {
+    const uint slot = push.first_slot + 8u * block;
+    const uint count = min(8u, push.nodes - 8u * block);
+    const vec4 frame = bsh_frame(spheres);
+    push.frames.at[slot >> 3] = frame;
+    for (uint i = 0u; i < 8u; ++i) {
+        const uvec2 code = bsh_encode(frame, spheres.at[i]);
+        push.spheres.at[slot + i] = i < count ? code : uvec2(0u, bsh_absent << 16);
+        if (i >= count) push.cones.at[slot + i] = bsh_cone_all;
+        spheres.at[i] = bsh_decode(frame, code);
+    }
+    if (push.first_owner == 0u) return;
+    const Sphere owner = bsh_merge(spheres);
+    push.merged.at[slot >> 3] = vec4(owner.center, owner.radius);
+    push.cones.at[push.first_owner + block] = bsh_cone_merge(cones);
+}

@@ -1,0 +1,178 @@
+// How bounds are made: the formulae of the bottom-up pass, for the kernels and their twin.
+//
+// Everything is rounded outward: a sphere's centre is whatever the code decodes to, and its radius is an upper bound of
+// what reaches out from there. Float errors are below 2^-21 relative; `bsh_reach` adds 2^-20.
+#ifndef MYRIAD_COMPUTE_BSH_BUILD_H
+#define MYRIAD_COMPUTE_BSH_BUILD_H
+
+#include "compute/bsh/bsh_io.h"
+
+MYRIAD_BEGIN
+MYRIAD_ARRAY(BshPositions, vec3, 4)
+
+// A parent is larger than what its children need by this factor, so that criteria computed in floating point decrease
+// from parent to child (spec, section 2).
+const float bsh_slack = 1.0f + 1.0f / 65536.0f;
+// Moves of the centre in bsh_merge; README.md has what fewer and more of them give.
+const uint bsh_merge_moves = 8u;
+
+struct BshSpheres { Sphere at[8]; };
+struct BshCones { uint at[8]; };
+
+// "bsh/leaves" and "bsh/inner": one invocation a block of the level whose nodes are slots [first_slot, first_slot + nodes).
+struct BshLevelPush {
+    Float4s frames;            // by block
+    Uint2s spheres;            // by slot
+    Uints cones;               // by slot
+    Float4s merged;            // by block: the sphere of the node that owns it, before it is encoded
+    SurfaceSamples samples;    // leaves only, with the two below
+    Uint4s triangles;
+    BshPositions positions;
+    float leaf_radius;
+    uint nodes, first_slot;
+    uint first_child_block;    // inner only: the block that the level's first node owns
+    uint first_owner;          // slot of the node that owns the level's first block; 0: nobody owns it, it holds the root
+};
+
+// At least |s.center - c| + s.radius; the radius itself where the centres coincide.
+MYRIAD_FN float bsh_reach(vec3 c, Sphere s) {
+    const float x = s.center.x - c.x;
+    const float y = s.center.y - c.y;
+    const float z = s.center.z - c.z;
+    if (x == 0.0f && y == 0.0f && z == 0.0f) return s.radius;
+    // 2^-60 m covers squares that underflow.
+    return (sqrt(x * x + y * y + z * z) + s.radius) * (1.0f + 1.0f / 1048576.0f) + 8.6736174e-19f;
+}
+
+// The frame of a block: the least corner of its children's centres, and the least power of two as the step that spans
+// them. With a power of two, decoding is the same with and without fused multiply-add, on every device.
+MYRIAD_FN vec4 bsh_frame(BshSpheres children) {
+    vec3 low = children.at[0].center;
+    vec3 high = low;
+    for (uint i = 1u; i < 8u; ++i) {
+        low = min(low, children.at[i].center);
+        high = max(high, children.at[i].center);
+    }
+    const float extent = max(max(high.x - low.x, high.y - low.y), high.z - low.z) / 65535.0f;
+    return vec4(low, uintBitsToFloat((floatBitsToUint(extent) + 0x7fffffu) & 0x7f800000u));
+}
+
+MYRIAD_FN uint bsh_quantise(float v, float origin, float step) {
+    return step > 0.0f ? uint(clamp(floor((v - origin) / step + 0.5f), 0.0f, 65535.0f)) : 0u;
+}
+MYRIAD_FN uvec2 bsh_encode(vec4 frame, Sphere s) {
+    const uint x = bsh_quantise(s.center.x, frame.x, frame.w);
+    const uint y = bsh_quantise(s.center.y, frame.y, frame.w);
+    const uint z = bsh_quantise(s.center.z, frame.z, frame.w);
+    const Sphere decoded = bsh_decode(frame, uvec2(x | (y << 16), z));
+    return uvec2(x | (y << 16), z | (bsh_radius_code(bsh_reach(decoded.center, s)) << 16));
+}
+
+// A small sphere around eight: from the centre of their box, a few moves towards the farthest (Badoiu and Clarkson 2003),
+// and the best centre seen.
+MYRIAD_FN Sphere bsh_merge(BshSpheres children) {
+    vec3 low = children.at[0].center - children.at[0].radius;
+    vec3 high = children.at[0].center + children.at[0].radius;
+    for (uint i = 1u; i < 8u; ++i) {
+        low = min(low, children.at[i].center - children.at[i].radius);
+        high = max(high, children.at[i].center + children.at[i].radius);
+    }
+    Sphere best;
+    best.radius = -1.0f;
+    vec3 center = 0.5f * low + 0.5f * high;
+    for (uint move = 0u; move <= bsh_merge_moves; ++move) {
+        float radius = 0.0f;
+        vec3 farthest = center;
+        for (uint i = 0u; i < 8u; ++i) {
+            const float reach = bsh_reach(center, children.at[i]);
+            if (reach > radius) {
+                radius = reach;
+                farthest = children.at[i].center;
+            }
+        }
+        if (best.radius < 0.0f || radius < best.radius) {
+            best.center = center;
+            best.radius = radius;
+        }
+        center = center + (farthest - center) * (1.0f / float(move + 8u));
+    }
+    best.radius = best.radius * bsh_slack;
+    return best;
+}
+
+// The position of a sample.
+MYRIAD_FN vec3 bsh_position(vec3 a, vec3 b, vec3 c, float u, float v) { return (1.0f - u - v) * a + u * b + v * c; }
+
+// ---- Cones of lines ----
+
+MYRIAD_FN uint bsh_cone_pack_axis(vec3 d) {
+    const float sum = abs(d.x) + abs(d.y) + abs(d.z);
+    float u = d.x / sum;
+    float v = d.y / sum;
+    if (d.z < 0.0f) {
+        const float folded = (1.0f - abs(v)) * sign_not_zero(u);
+        v = (1.0f - abs(u)) * sign_not_zero(v);
+        u = folded;
+    }
+    return uint(int(floor(u * 2047.0f + 0.5f)) + 0x800) | (uint(int(floor(v * 2047.0f + 0.5f)) + 0x800) << 12);
+}
+
+// The least cone around `axis` that holds angles of cosine `least_cos`, less what rounding may have cost.
+MYRIAD_FN uint bsh_cone_code(uint axis, float least_cos) {
+    const float t = sqrt(clamp(1.0f - least_cos + 1.0f / 1048576.0f, 0.0f, 1.0f));
+    return axis | (min(uint(t * 255.0f) + 1u, 255u) << 24);
+}
+
+// Of the triangle with these edges. The normal of a needle is uncertain, so its cone is wider; at the end it is all.
+MYRIAD_FN uint bsh_cone_of(vec3 e, vec3 f) {
+    const float size = max(max(max(abs(e.x), abs(e.y)), abs(e.z)), max(max(abs(f.x), abs(f.y)), abs(f.z)));
+    if (!(size > 0.0f)) return bsh_cone_all;
+    const vec3 n = cross(e / size, f / size);
+    const float norm = sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
+    const float sin_error = 1.9073486e-6f / norm;  // 2^-19: the error of n, whose edges are of length 1
+    if (!(sin_error < 0.5f)) return bsh_cone_all;
+    const uint axis = bsh_cone_pack_axis(n);
+    const vec3 a = bsh_cone_axis(axis);
+    const vec3 s = cross(a, n / norm);
+    const float sin_axis = sqrt(s.x * s.x + s.y * s.y + s.z * s.z);
+    const float sine = sin_axis + sin_error;  // at least the sine of the sum
+    return sine < 1.0f ? bsh_cone_code(axis, sqrt(1.0f - sine * sine)) : bsh_cone_all;
+}
+
+// The cone around eight. Each axis is flipped into the hemisphere of the first; the owner's is between their extremes.
+MYRIAD_FN uint bsh_cone_merge(BshCones children) {
+    const vec3 first = bsh_cone_axis(children.at[0]);
+    vec3 low = first;
+    vec3 high = first;
+    for (uint i = 1u; i < 8u; ++i) {
+        vec3 a = bsh_cone_axis(children.at[i]);
+        if (a.x * first.x + a.y * first.y + a.z * first.z < 0.0f) a = -a;
+        low = min(low, a);
+        high = max(high, a);
+    }
+    const vec3 between = low + high;
+    if (!(abs(between.x) + abs(between.y) + abs(between.z) > 0.0f)) return bsh_cone_all;
+    const uint axis = bsh_cone_pack_axis(between);
+    const vec3 to = bsh_cone_axis(axis);
+    float least_cos = 1.0f;
+    uint least_code = 0u;
+    for (uint i = 0u; i < 8u; ++i) {
+        const uint cone = children.at[i];
+        // A cone around the very axis adds its angle as it is: flat surfaces stay as flat as their triangles.
+        if ((cone & 0xffffffu) == axis) {
+            least_code = max(least_code, cone >> 24);
+            continue;
+        }
+        const vec3 a = bsh_cone_axis(cone);
+        const vec3 s = cross(a, to);
+        const float ca = abs(a.x * to.x + a.y * to.y + a.z * to.z);
+        const float sa = sqrt(s.x * s.x + s.y * s.y + s.z * s.z);
+        const vec2 cs = bsh_cone_cos_sin(cone);
+        least_cos = min(least_cos, ca * cs.x - sa * cs.y);
+    }
+    const uint code = least_cos < 1.0f ? bsh_cone_code(axis, least_cos) >> 24 : 0u;
+    return axis | (max(code, least_code) << 24);
+}
+MYRIAD_END
+
+#endif

@@ -1,0 +1,89 @@
+// The bounding-sphere hierarchy as kernels see it.
+//
+// The paper's tree is a complete binary tree over n = 2^d samples (ManyLoDs 4.1). It is stored with three of its levels
+// taken at once, as an 8-ary tree: opening a node reads one block, which holds the bounds of its eight children in
+// 16 + 8 * 8 bytes (shared/lavapipe: the price is words touched per lane; the paper, section 7: any arity works).
+//
+//   slot     a node, seen as a child: slot s belongs to block s / 8. Leaves are slots [0, n), in tree order.
+//   block    the children of one inner node: slots [8 b, 8 b + 8). The inner node in slot s >= n owns block s - n, so
+//            parent and child are one addition and one shift apart on every level, and no level needs a table.
+//   root     owns the last block, blocks - 1, which has fewer than eight children when d is not a multiple of three.
+//            The root itself sits alone in slot 8 * blocks, the first of one more block ("over the root").
+//
+// A block's children are quantised in the block's own frame: centre = origin + step * (x, y, z), 16 bits each; the radius
+// is a float of 16 bits (8 exponent, 8 mantissa), rounded up. Precision is relative to the block, so it holds at any
+// scale and anywhere. Every decoded sphere contains what it was made from, bounds are merged from decoded spheres, hence
+// each node's sphere contains its descendants' in floating point (spec, section 2).
+#ifndef MYRIAD_COMPUTE_BSH_IO_H
+#define MYRIAD_COMPUTE_BSH_IO_H
+
+#include "compute/common/packing.h"
+#include "compute/views/view_io.h"
+
+MYRIAD_BEGIN
+const uint bsh_arity_log2 = 3u;
+const uint bsh_arity = 8u;
+const uint bsh_absent = 0xffffu;     // radius code of a slot without a node
+
+// One sample of the surface; its position follows the triangle when it deforms (ManyLoDs 4.1).
+struct SurfaceSample {
+    uint triangle;
+    float u, v;                      // position = (1 - u - v) p0 + u p1 + v p2
+};
+MYRIAD_ARRAY(SurfaceSamples, SurfaceSample, 4)
+
+// What a kernel needs to walk the tree. All arrays are indexed by block or by slot as said.
+struct BshRef {
+    Float4s frames;                  // by block: origin xyz, step
+    Uint2s spheres;                  // by slot: x | y << 16, z | radius code << 16
+    Uints cones;                     // by slot: see bsh_cone_*
+    uint leaves;                     // n
+    uint blocks;                     // without the one over the root
+};
+
+MYRIAD_FN bool bsh_is_leaf(uint slot, uint leaves) { return slot < leaves; }
+// The block that an inner node owns.
+MYRIAD_FN uint bsh_block_of(uint slot, uint leaves, uint blocks) {
+    return slot == 8u * blocks ? blocks - 1u : slot - leaves;
+}
+MYRIAD_FN bool bsh_is_absent(uvec2 code) { return (code.y >> 16) == bsh_absent; }
+
+MYRIAD_FN Sphere bsh_decode(vec4 frame, uvec2 code) {
+    Sphere s;
+    s.center = vec3(frame) + frame.w * vec3(float(code.x & 0xffffu), float(code.x >> 16), float(code.y & 0xffffu));
+    s.radius = uintBitsToFloat((code.y >> 16) << 15);
+    return s;
+}
+
+// The smallest radius code whose value is at least r; r >= 0 and finite.
+MYRIAD_FN uint bsh_radius_code(float r) { return (floatBitsToUint(r) + 0x7fffu) >> 15; }
+
+// Normal cone, of *lines*: n and -n are the same normal, since a sample is seen from both sides, so a thin sheet with two
+// faces is as flat as its one face. Axis in 12 + 12 bits (octahedral), then 8 bits t of half-angle theta in [0, pi/2]:
+// cos(theta) = 1 - (t / 255)^2, which is nearly uniform in the angle and needs no trigonometry; rounded up so that the
+// decoded cone contains all normals below the node. 255: all directions (also of a triangle without area).
+const uint bsh_cone_all = 0xff800800u;
+
+MYRIAD_FN vec3 bsh_cone_axis(uint cone) {
+    const uint x = cone & 0xfffu;
+    const uint y = (cone >> 12) & 0xfffu;
+    // Re-uses the 16-bit map: 12 bits centred in its range.
+    const float u = float(int(x) - 0x800) / 2047.0f;
+    const float v = float(int(y) - 0x800) / 2047.0f;
+    const float z = 1.0f - abs(u) - abs(v);
+    float a = u;
+    float b = v;
+    if (z < 0.0f) {
+        a = (1.0f - abs(v)) * sign_not_zero(u);
+        b = (1.0f - abs(u)) * sign_not_zero(v);
+    }
+    return vec3(a, b, z) / sqrt(a * a + b * b + z * z);
+}
+// Cosine and sine of the half-angle.
+MYRIAD_FN vec2 bsh_cone_cos_sin(uint cone) {
+    const float t = float(cone >> 24) / 255.0f;
+    return vec2(1.0f - t * t, t * sqrt(2.0f - t * t));
+}
+MYRIAD_END
+
+#endif

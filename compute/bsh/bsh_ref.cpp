@@ -1,0 +1,69 @@
+#include "compute/bsh/bsh_ref.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/transfer.hpp"
+
+namespace myriad::compute {
+
+using glm::dvec3;
+
+vec3 BshInput::position(uint leaf) const {
+    const SurfaceSample& s = samples[leaf];
+    const glm::uvec4 t = triangles[s.triangle];
+    return bsh_position(positions[t.x], positions[t.y], positions[t.z], s.u, s.v);
+}
+
+BshArrays bsh_ref(const BshInput& input) {
+    const std::vector<BshLevel> levels = bsh_levels(uint(input.samples.size()));
+    BshArrays tree;
+    tree.leaves = levels.front().nodes;
+    tree.blocks = levels.back().first_block();
+    tree.frames.resize(tree.blocks + 1);
+    tree.spheres.resize(8 * (tree.blocks + 1));
+    tree.cones.resize(8 * (tree.blocks + 1));
+
+    std::vector<Sphere> nodes(tree.leaves);  // of the level, before they are encoded
+    for (uint leaf = 0; leaf < tree.leaves; ++leaf) {
+        const glm::uvec4 t = input.triangles[input.samples[leaf].triangle];
+        nodes[leaf] = {input.position(leaf), input.leaf_radius};
+        tree.cones[leaf] = bsh_cone_of(input.positions[t.y] - input.positions[t.x], input.positions[t.z] - input.positions[t.x]);
+    }
+    for (const BshLevel& level : levels) {
+        std::vector<Sphere> owners;
+        for (uint block = 0; block < level.blocks(); ++block) {
+            const uint slot = level.first_slot + 8 * block;
+            BshSpheres spheres;
+            BshCones cones;
+            for (uint i = 0; i < 8; ++i) {
+                const uint node = std::min(8 * block + i, level.nodes - 1);
+                spheres.at[i] = nodes[node];
+                cones.at[i] = tree.cones[level.first_slot + node];
+            }
+            tree.frames[slot / 8] = bsh_frame(spheres);
+            for (uint i = 0; i < 8; ++i) {
+                const uvec2 code = bsh_encode(tree.frames[slot / 8], spheres.at[i]);
+                spheres.at[i] = bsh_decode(tree.frames[slot / 8], code);
+                const bool present = 8 * block + i < level.nodes;
+                tree.spheres[slot + i] = present ? code : uvec2(0, bsh_absent << 16);
+                if (!present) tree.cones[slot + i] = bsh_cone_all;
+            }
+            if (slot == tree.root()) break;
+            owners.push_back(bsh_merge(spheres));
+            tree.cones[level.first_slot + 8 * level.blocks() + block] = bsh_cone_merge(cones);
+        }
+        nodes = std::move(owners);
+    }
+    return tree;
+}
+
+BshArrays bsh_download(engine::Device& device, const Bsh& bsh) {
+    return {.frames = engine::download(device, bsh.frames()),
+            .spheres = engine::download(device, bsh.spheres()),
+            .cones = engine::download(device, bsh.cones()),
+            .leaves = bsh.leaves(),
+            .blocks = bsh.blocks()};
+}
+
+}  // namespace myriad::compute

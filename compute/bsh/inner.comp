@@ -1,0 +1,19 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Every other level, from the spheres and cones that the level below left for the owners of its blocks.
+#include "compute/bsh/bsh_block.glsl"
+
+void main() {
+    const uint block = thread_index();
+    if (8u * block >= push.nodes) return;
+    BshSpheres spheres;
+    BshCones cones;
+    for (uint i = 0u; i < 8u; ++i) {
+        const uint node = child_of(block, i);
+        const vec4 s = push.merged.at[push.first_child_block + node];
+        spheres.at[i].center = vec3(s);
+        spheres.at[i].radius = s.w;
+        cones.at[i] = push.cones.at[push.first_slot + node];
+    }
+    write_block(block, spheres, cones);
+}

@@ -1,0 +1,24 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// The lowest level: leaves are discs around samples, bounded by spheres and by their triangles' normals.
+#include "compute/bsh/bsh_block.glsl"
+
+void main() {
+    const uint block = thread_index();
+    if (8u * block >= push.nodes) return;
+    BshSpheres spheres;
+    BshCones cones;
+    for (uint i = 0u; i < 8u; ++i) {
+        const uint leaf = child_of(block, i);
+        const SurfaceSample s = push.samples.at[leaf];
+        const uvec4 t = push.triangles.at[s.triangle];
+        const vec3 a = push.positions.at[t.x];
+        const vec3 b = push.positions.at[t.y];
+        const vec3 c = push.positions.at[t.z];
+        spheres.at[i].center = bsh_position(a, b, c, s.u, s.v);
+        spheres.at[i].radius = push.leaf_radius;
+        cones.at[i] = bsh_cone_of(b - a, c - a);
+        push.cones.at[leaf] = cones.at[i];
+    }
+    write_block(block, spheres, cones);
+}

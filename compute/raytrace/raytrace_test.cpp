@@ -1,0 +1,418 @@
+#include <cstdlib>
+
+#include <embree3/rtcore.h>
+
+#include "compute/kernels.hpp"
+#include "compute/raytrace/ray_query.hpp"
+#include "compute/raytrace/raytrace_ref.hpp"
+#include "engine/testing.hpp"
+
+namespace myriad::compute {
+namespace {
+
+struct Mesh {
+    std::vector<vec3> positions;
+    std::vector<uvec4> triangles;
+
+    void triangle(vec3 a, vec3 b, vec3 c) {
+        const uint n = uint(positions.size());
+        positions.insert(positions.end(), {a, b, c});
+        triangles.push_back({n, n + 1, n + 2, 0});
+    }
+    // An axis-aligned box whose faces share vertices and look outward.
+    void box(vec3 lo, vec3 hi) {
+        const uint n = uint(positions.size());
+        for (uint i = 0; i < 8; ++i) positions.push_back({i & 1 ? hi.x : lo.x, i & 2 ? hi.y : lo.y, i & 4 ? hi.z : lo.z});
+        for (auto [a, b, c, d] : {std::array{0u, 4u, 6u, 2u}, {1u, 3u, 7u, 5u}, {0u, 1u, 5u, 4u}, {2u, 6u, 7u, 3u}, {0u, 2u, 3u, 1u}, {4u, 5u, 7u, 6u}}) {
+            triangles.push_back({n + a, n + b, n + c, 0});
+            triangles.push_back({n + a, n + c, n + d, 0});
+        }
+    }
+    // A closed sphere of 2 * rings * segments or so triangles, normals outward.
+    static Mesh sphere(uint rings, uint segments, float radius, vec3 centre) {
+        Mesh m;
+        m.positions.push_back(centre + vec3(0, 0, radius));
+        for (uint r = 1; r < rings; ++r)
+            for (uint s = 0; s < segments; ++s) {
+                const double a = M_PI * r / rings, b = 2 * M_PI * s / segments;
+                m.positions.push_back(centre + radius * vec3(sin(a) * cos(b), sin(a) * sin(b), cos(a)));
+            }
+        m.positions.push_back(centre - vec3(0, 0, radius));
+        auto at = [&](uint r, uint s) { return r == 0 ? 0 : r == rings ? uint(m.positions.size() - 1) : 1 + (r - 1) * segments + s % segments; };
+        for (uint r = 0; r < rings; ++r)
+            for (uint s = 0; s < segments; ++s) {
+                if (r > 0) m.triangles.push_back({at(r, s), at(r + 1, s), at(r, s + 1), 0});
+                if (r + 1 < rings) m.triangles.push_back({at(r + 1, s), at(r + 1, s + 1), at(r, s + 1), 0});
+            }
+        return m;
+    }
+};
+
+class RaytraceTest : public engine::DeviceTest {
+protected:
+    float uniform(float lo = 0, float hi = 1) { return std::uniform_real_distribution<float>(lo, hi)(random); }
+    vec3 in_cube(float r = 1) { return {uniform(-r, r), uniform(-r, r), uniform(-r, r)}; }
+    vec3 direction() {
+        for (;;)
+            if (const vec3 d = in_cube(); dot(d, d) > 0.01f && dot(d, d) < 1) return normalize(d);
+    }
+    Mesh soup(uint n, float size) {
+        Mesh m;
+        for (uint i = 0; i < n; ++i) {
+            const vec3 c = in_cube();
+            m.triangle(c + size * in_cube(), c + size * in_cube(), c + size * in_cube());
+        }
+        return m;
+    }
+    std::vector<Ray> random_rays(uint n, float cube = 1.2f) {
+        std::vector<Ray> rays;
+        for (uint i = 0; i < n; ++i) rays.push_back({in_cube(cube), i % 3 ? 0 : 0.3f, i % 5 ? direction() : 2.0f * direction(), i % 4 ? INFINITY : 0.7f});
+        return rays;
+    }
+
+    std::vector<RayHitRecord> closest(engine::Device& on, const Bvh& bvh, const std::vector<Ray>& rays) {
+        RayQuery query(on);
+        auto list = engine::upload(on, "test", "rays", rays);
+        auto status = engine::upload(on, "test", "status", std::vector<uint>{0});
+        engine::Array<RayHitRecord> hits(on, "test", "hits", rays.size());
+        engine::Recorder recorder(on);
+        query.closest(recorder, bvh, list, hits, status);
+        recorder.submit_and_wait();
+        EXPECT_EQ(engine::download(on, status)[0], 0u);
+        return engine::download(on, hits);
+    }
+    std::vector<uint> occluded(engine::Device& on, const Bvh& bvh, const std::vector<Ray>& rays) {
+        RayQuery query(on);
+        auto list = engine::upload(on, "test", "rays", rays);
+        auto status = engine::upload(on, "test", "status", std::vector<uint>{0});
+        engine::Array<uint> result(on, "test", "occluded", rays.size());
+        engine::Recorder recorder(on);
+        query.occluded(recorder, bvh, list, result, status);
+        recorder.submit_and_wait();
+        EXPECT_EQ(engine::download(on, status)[0], 0u);
+        return engine::download(on, result);
+    }
+    std::vector<RayHitRecord> closest(const Mesh& m, const std::vector<Ray>& rays) { return closest(device, Bvh(device, m.positions, m.triangles), rays); }
+    std::vector<uint> occluded(const Mesh& m, const std::vector<Ray>& rays) { return occluded(device, Bvh(device, m.positions, m.triangles), rays); }
+
+    // Device against the float twin, to the bit, closest and occluded.
+    void agree(engine::Device& on, const Mesh& m, const std::vector<Ray>& rays, BvhQuality quality = BvhQuality::quick) {
+        const BvhData all = build_bvh(m.positions, m.triangles);
+        const Bvh bvh(on, m.positions, m.triangles, quality);
+        const auto hits = closest(on, bvh, rays);
+        const auto blocked = occluded(on, bvh, rays);
+        uint wrong = 0;
+        for (size_t i = 0; i < rays.size(); ++i) {
+            const RayHitRecord expected = closest_ref(all.triangles, rays[i]);
+            if (std::memcmp(&expected, &hits[i], sizeof expected) == 0 && blocked[i] == uint(expected.triangle != ~0u)) continue;
+            if (++wrong == 1)
+                ADD_FAILURE() << "ray " << i << " of " << rays.size() << ": expected triangle " << expected.triangle << " at " << expected.t << " ("
+                              << expected.u << ", " << expected.v << "), found " << hits[i].triangle << " at " << hits[i].t << " (" << hits[i].u
+                              << ", " << hits[i].v << "), occluded " << blocked[i];
+        }
+        EXPECT_EQ(wrong, 0u) << "of " << rays.size();
+    }
+    void agree(const Mesh& m, const std::vector<Ray>& rays) { agree(device, m, rays); }
+
+    // Rays from inside a closed mesh at its vertices, edge midpoints and random points; none may escape.
+    void watertight(const Mesh& m, vec3 inside, float jitter, uint n_random) {
+        std::vector<Ray> rays;
+        auto shoot = [&](vec3 target) {
+            const vec3 from = inside + in_cube(jitter);
+            rays.push_back({from, 0, target - from, INFINITY});
+        };
+        for (vec3 p : m.positions) for (int k = 0; k < 3; ++k) shoot(p);
+        for (uvec4 t : m.triangles)
+            for (int k = 0; k < 3; ++k) shoot(0.5f * (m.positions[t[k]] + m.positions[t[(k + 1) % 3]]));
+        for (uint i = 0; i < n_random; ++i) rays.push_back({inside + in_cube(jitter), 0, direction(), INFINITY});
+        const auto hits = closest(m, rays);
+        const auto blocked = occluded(m, rays);
+        uint escaped = 0, inward = 0;
+        for (size_t i = 0; i < rays.size(); ++i) {
+            escaped += hits[i].triangle == ~0u || !blocked[i];
+            inward += hits[i].front;
+        }
+        EXPECT_EQ(escaped, 0u) << "of " << rays.size();
+        EXPECT_LE(inward, rays.size() / 1000) << "seen from inside, faces show their backs";
+    }
+};
+
+const Mesh one{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2, 0}}};
+
+TEST_F(RaytraceTest, one_triangle_by_hand) {
+    const auto hits = closest(one, {{{0.25f, 0.5f, 2}, 0, {0, 0, -1}, INFINITY},
+                                    {{0.25f, 0.5f, -2}, 0, {0, 0, 4}, INFINITY},
+                                    {{0.25f, 0.5f, 2}, 0, {0, 0, 1}, INFINITY},
+                                    {{0.75f, 0.5f, 2}, 0, {0, 0, -1}, INFINITY},
+                                    {{0.25f, 0.5f, 2}, 0, {0, 0, -1}, 2},
+                                    {{0.25f, 0.5f, 2}, 2, {0, 0, -1}, 9}});
+    EXPECT_EQ(hits[0].triangle, 0u);
+    EXPECT_EQ(hits[0].t, 2); EXPECT_EQ(hits[0].u, 0.25f); EXPECT_EQ(hits[0].v, 0.5f); EXPECT_EQ(hits[0].front, 1u);
+    EXPECT_EQ(hits[1].t, 0.5f); EXPECT_EQ(hits[1].front, 0u);
+    for (int i = 2; i < 6; ++i) EXPECT_EQ(hits[i].triangle, ~0u) << i;  // behind, beside, and the interval is open
+}
+
+TEST_F(RaytraceTest, twin_agrees_with_doubles) {
+    const Mesh m = soup(300, 0.3f);
+    const BvhData all = build_bvh(m.positions, m.triangles);
+    uint hits = 0;
+    for (const Ray& ray : random_rays(3000)) {
+        const ExactHit exact = closest_exact(m.positions, m.triangles, ray);
+        const RayHitRecord found = closest_ref(all.triangles, ray);
+        if (std::abs(exact.margin) < 1e-4) continue;
+        ASSERT_EQ(found.triangle, exact.triangle);
+        if (found.triangle == ~0u) continue;
+        ++hits;
+        EXPECT_NEAR(found.t, exact.t, 1e-4 * exact.t + 1e-6);
+        EXPECT_NEAR(found.u, exact.u, 1e-3); EXPECT_NEAR(found.v, exact.v, 1e-3);
+    }
+    EXPECT_GT(hits, 500u);
+}
+
+TEST_F(RaytraceTest, equals_the_twin_at_boundary_counts) {
+    for (uint triangles : {0, 1, 2, 3, 4, 5, 8, 9, 33, 1000}) {
+        const Mesh m = soup(triangles, 0.4f);
+        for (uint rays : {0, 1, 7, 8, 9, 63, 64, 65, 500}) agree(m, random_rays(rays));
+    }
+}
+
+TEST_F(RaytraceTest, equals_the_twin_in_soups_of_all_sizes) {
+    for (float size : {0.001f, 0.05f, 1.0f}) {
+        const Mesh m = soup(5000, size);
+        agree(device, m, random_rays(4000), BvhQuality::quick);
+        agree(device, m, random_rays(4000), BvhQuality::best);
+    }
+}
+
+TEST_F(RaytraceTest, lanes_alone_equal_packets) {
+    setenv("MYRIAD_PLAIN_GROUPS", "1", 1);
+    engine::Device plain({.select = "", .validation = true, .memory_limit = 0});
+    unsetenv("MYRIAD_PLAIN_GROUPS");
+    for (uint n : {0, 1, 40, 3000}) agree(plain, soup(n, 0.2f), random_rays(2001));
+    EXPECT_EQ(plain.validation_messages(), 0u);
+}
+
+// Grids make rays run along edges, through vertices and in planes; every axis and sign, and directions with zeros.
+TEST_F(RaytraceTest, grids_and_axes) {
+    Mesh m;
+    for (int x = 0; x < 5; ++x)
+        for (int y = 0; y < 5; ++y)
+            for (int z = 0; z < 5; ++z) m.box(vec3(x, y, z), vec3(x, y, z) + vec3(z % 2 ? 1.0f : 0.5f));
+    std::vector<Ray> rays;
+    for (int x = -1; x <= 1; ++x)
+        for (int y = -1; y <= 1; ++y)
+            for (int z = -1; z <= 1; ++z)
+                for (int k = 0; k < 60 && (x || y || z); ++k) {
+                    const vec3 from = vec3(random() % 13, random() % 13, random() % 13) * 0.5f - vec3(0.5f);
+                    rays.push_back({from, 0, vec3(x, y, z), INFINITY});
+                    rays.push_back({from - 1e6f * vec3(x, y, z), 0, vec3(x, y, z), INFINITY});
+                    if (y || z) rays.push_back({from, 0, vec3(x * 1e-30f, y, z * 1e-6f), INFINITY});
+                }
+    agree(m, rays);
+}
+
+TEST_F(RaytraceTest, scales_and_places) {
+    for (float scale : {1e-6f, 1.0f, 1e6f})
+        for (float place : {0.0f, 1.0f, 1e6f}) {
+            Mesh m = soup(1000, 0.2f);
+            m.box(vec3(-0.3f), vec3(0.2f));
+            auto rays = random_rays(1000);
+            for (vec3& p : m.positions) p = p * scale + vec3(place * scale, -place, 0);
+            for (Ray& r : rays) {
+                r.origin = r.origin * scale + vec3(place * scale, -place, 0);
+                if (r.t_min > 0) r.direction *= scale;
+            }
+            agree(m, rays);
+            for (Ray& r : rays) r.origin -= r.direction / glm::length(r.direction) * 1e6f * scale, r.t_max = INFINITY;
+            agree(m, rays);
+        }
+}
+
+TEST_F(RaytraceTest, nothing_escapes_a_sphere) {
+    watertight(Mesh::sphere(60, 120, 1, vec3(0)), vec3(0), 0, 20000);
+    watertight(Mesh::sphere(60, 120, 1, vec3(0)), vec3(0), 0.5f, 100000);
+    watertight(Mesh::sphere(8, 700, 1e6f, vec3(3e6f, 0, 1)), vec3(3e6f, 0, 1), 1e5f, 50000);  // slivers
+    watertight(Mesh::sphere(40, 80, 1e-6f, vec3(2e-6f, 0, 0)), vec3(2e-6f, 0, 0), 5e-7f, 50000);
+    watertight(Mesh::sphere(40, 80, 50, vec3(1e6f, -1e6f, 0)), vec3(1e6f, -1e6f, 0), 20, 50000);  // vertices rounded to 1/16
+}
+
+TEST_F(RaytraceTest, nothing_escapes_a_box) {
+    Mesh m;
+    m.box(vec3(-1, -2, -3), vec3(1, 2, 3));
+    watertight(m, vec3(0), 0, 10000);
+    watertight(m, vec3(0), 0.9f, 100000);
+    Mesh flat;  // origins keep the distance from the faces that ray_origin gives: 2e-3 where coordinates reach 1000
+    flat.box(vec3(-1000, -1, -0.02f), vec3(1000, 1, 0.02f));
+    watertight(flat, vec3(0), 0.018f, 100000);
+}
+
+TEST_F(RaytraceTest, zero_area_and_broken_triangles_are_dropped) {
+    Mesh m;
+    m.triangle({0, 0, 0}, {1, 1, 1}, {2, 2, 2});
+    m.triangle({0, 0, 0}, {0, 0, 0}, {1, 0, 0});
+    m.triangle({0, 0, 0}, {0, NAN, 0}, {1, 0, 0});
+    m.triangle({0, 0, 0}, {0, INFINITY, 0}, {1, 0, 0});
+    const Bvh empty(device, m.positions, m.triangles);
+    EXPECT_EQ(empty.triangles(), 0u); EXPECT_EQ(empty.dropped(), 4u);
+    agree(m, random_rays(100));
+    for (uint i = 0; i < 500; ++i) {  // needles down to denormals
+        const vec3 a = in_cube(), along = in_cube();
+        m.triangle(a, a + along, a + 0.5f * along + std::ldexp(1.0f, -int(i) / 4) * in_cube());
+    }
+    agree(m, random_rays(3000));
+}
+
+TEST_F(RaytraceTest, a_million_coincident_triangles) {
+    Mesh m = one;
+    m.triangles.resize(1000000, m.triangles[0]);
+    const Bvh bvh(device, m.positions, m.triangles);
+    EXPECT_EQ(bvh.triangles(), 1u);
+    EXPECT_EQ(closest(device, bvh, {{{0.2f, 0.2f, 1}, 0, {0, 0, -1}, 9}})[0].triangle, 0u);
+    // Almost coincident ones cannot be dropped: the tree must stay within the stack, and find the top of the heap.
+    Mesh heap;
+    for (uint i = 0; i < 100000; ++i) heap.triangle({0, 0, i * 1e-9f}, {1, 0, i * 1e-9f}, {0, 1, i * 1e-9f});
+    const Bvh tall(device, heap.positions, heap.triangles);
+    EXPECT_LE(tall.depth(), bvh_max_depth);
+    EXPECT_NEAR(closest(device, tall, {{{0.2f, 0.2f, 1}, 0, {0, 0, -1}, 9}})[0].t, 1 - 1e-4f, 1e-6f);
+}
+
+// Each triangle is half as large as the one before: the cost of the best split favours a tree as deep as the list is long.
+TEST_F(RaytraceTest, depth_is_bounded) {
+    Mesh m;
+    for (int i = 0; i < 120; ++i) {
+        const float s = std::ldexp(1.0f, 60 - i);
+        for (int k = 0; k < 20; ++k) m.triangle(s * (vec3(1) + 0.1f * in_cube()), s * (vec3(1) + 0.1f * in_cube()), s * (vec3(1) + 0.1f * in_cube()));
+    }
+    for (auto quality : {BvhQuality::quick, BvhQuality::best}) EXPECT_LE(build_bvh(m.positions, m.triangles, quality).depth, bvh_max_depth);
+}
+
+// Walks the tree: every triangle is in a leaf, every quantised box contains what lies below it.
+void contains(const BvhData& data, uint index, uint level, std::vector<uint>& seen) {
+    ASSERT_LT(index, data.nodes.size());
+    ASSERT_LE(level, data.depth);
+    const BvhNode& node = data.nodes[index];
+    for (uint i = 0; i < bvh_children(node.frame); ++i) {
+        const vec3 scale = bvh_scale(node.frame);
+        const BvhBox box{bvh_corner(node.origin, scale, node.child[i].x), bvh_corner(node.origin, scale, node.child[i].y)};
+        const uint count = node.child[i].x >> 24, first = node.first_triangle + (node.child[i].y >> 24);
+        for (uint k = first; k < first + count; ++k) {
+            const BvhTriangle& t = data.triangles[k];
+            ++seen[t.id];
+            for (vec3 p : {t.p0, t.p1, t.p2})
+                for (int a = 0; a < 3; ++a) ASSERT_TRUE(box.lo[a] < p[a] && p[a] < box.hi[a]) << "node " << index << " child " << i;
+        }
+        if (count == 0) contains(data, node.first_child + i, level + 1, seen);
+    }
+}
+
+TEST_F(RaytraceTest, boxes_contain_their_triangles_and_builds_repeat) {
+    for (float place : {0.0f, 1e6f}) {
+        Mesh m = soup(30000, 0.02f);
+        for (vec3& p : m.positions) p += vec3(place, 0, -place);
+        const BvhData data = build_bvh(m.positions, m.triangles);
+        std::vector<uint> seen(m.triangles.size());
+        contains(data, 0, 1, seen);
+        EXPECT_EQ(std::count(seen.begin(), seen.end(), 1u), long(data.triangles.size()));
+        EXPECT_EQ(data.triangles.size() + data.dropped, m.triangles.size());
+        for (auto quality : {BvhQuality::quick, BvhQuality::best}) {
+            const BvhData first = build_bvh(m.positions, m.triangles, quality);
+            for (int k = 0; k < 3; ++k) {
+                const BvhData again = build_bvh(m.positions, m.triangles, quality);
+                ASSERT_EQ(first.nodes.size(), again.nodes.size());
+                ASSERT_EQ(first.triangles.size(), again.triangles.size());
+                EXPECT_EQ(0, std::memcmp(first.nodes.data(), again.nodes.data(), first.nodes.size() * sizeof(BvhNode)));
+                EXPECT_EQ(0, std::memcmp(first.triangles.data(), again.triangles.data(), first.triangles.size() * sizeof(BvhTriangle)));
+            }
+        }
+    }
+}
+
+// A point on a triangle, in floats, and the ray that leaves it: near and far, small and large, upright and grazing.
+TEST_F(RaytraceTest, rays_leave_their_own_surface) {
+    for (float scale : {1e-6f, 1.0f, 1e4f})
+        for (float place : {0.0f, 10.0f, 1e4f}) {
+            uint blocked = 0;
+            for (int k = 0; k < 20; ++k) {
+                Mesh m;
+                m.triangle(scale * (in_cube() + vec3(place)), scale * (in_cube() + vec3(place)), scale * (in_cube() + vec3(place)));
+                const auto& p = m.positions;
+                const glm::dvec3 area = cross(glm::dvec3(p[1]) - glm::dvec3(p[0]), glm::dvec3(p[2]) - glm::dvec3(p[0]));
+                const vec3 n = vec3(normalize(area));
+                std::vector<Ray> rays;
+                for (int i = 0; i < 500; ++i) {
+                    float u = uniform(), v = uniform();
+                    if (u + v > 1) u = 1 - u, v = 1 - v;
+                    vec3 d = direction();
+                    d = normalize(d - n * dot(d, n) + n * (i % 2 ? std::abs(dot(d, n)) : 1e-3f));
+                    rays.push_back({ray_origin((1 - u - v) * p[0] + u * p[1] + v * p[2], n, ray_reach(p[0], p[1], p[2])), 0, d, INFINITY});
+                }
+                for (uint b : occluded(m, rays)) blocked += b;
+            }
+            EXPECT_EQ(blocked, 0u) << "scale " << scale << ", place " << place;
+        }
+}
+
+TEST_F(RaytraceTest, running_out_of_the_loop_budget_is_reported) {
+    const Mesh m = soup(2000, 0.3f);
+    const Bvh bvh(device, m.positions, m.triangles);
+    auto rays = on_device(random_rays(64));
+    auto status = on_device(std::vector<uint>{0});
+    engine::Array<RayHitRecord> hits(device, "test", "hits", 64);
+    engine::Program program(device, engine::compute_kernels, "raytrace/closest");
+    engine::Recorder recorder(device);
+    BvhRef ref = bvh.read(recorder);
+    ref.loop_budget = 3;
+    recorder.dispatch(program, RayQueryPush{.bvh = ref, .rays = recorder.read(rays), .hits = recorder.write(hits), .status = recorder.write(status), .count = 64}, 64);
+    recorder.submit_and_wait();
+    EXPECT_EQ(engine::download(device, status)[0], 1u);
+}
+
+// Embree itself, in its robust mode, on a height field with boxes on it.
+TEST_F(RaytraceTest, agrees_with_embree) {
+    Mesh m;
+    const int n = 300;
+    for (int y = 0; y <= n; ++y) for (int x = 0; x <= n; ++x) m.positions.push_back({x * 0.1f, uniform(0, 0.08f), y * 0.1f});
+    for (uint y = 0; y < n; ++y)
+        for (uint x = 0; x < n; ++x) {
+            const uint a = y * (n + 1) + x, b = a + n + 1;
+            m.triangles.push_back({a, b, a + 1, 0}), m.triangles.push_back({a + 1, b, b + 1, 0});
+        }
+    for (int i = 0; i < 3000; ++i) {
+        const vec3 lo(uniform(0, 29), uniform(0, 3), uniform(0, 29));
+        m.box(lo, lo + vec3(uniform(), uniform(), uniform()));
+    }
+    RTCDevice embree = rtcNewDevice(nullptr);
+    RTCScene scene = rtcNewScene(embree);
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    RTCGeometry geometry = rtcNewGeometry(embree, RTC_GEOMETRY_TYPE_TRIANGLE);
+    std::memcpy(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, m.positions.size()), m.positions.data(), 12 * m.positions.size());
+    auto* indices = static_cast<uvec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, m.triangles.size()));
+    for (size_t i = 0; i < m.triangles.size(); ++i) indices[i] = uvec3(m.triangles[i]);
+    rtcCommitGeometry(geometry), rtcAttachGeometry(scene, geometry), rtcReleaseGeometry(geometry), rtcCommitScene(scene);
+
+    std::vector<Ray> rays;
+    for (int i = 0; i < 100000; ++i) rays.push_back({vec3(15, 2, 15) + in_cube(15), 0, direction(), INFINITY});
+    for (auto quality : {BvhQuality::quick, BvhQuality::best}) {
+        const Bvh bvh(device, m.positions, m.triangles, quality);
+        const auto hits = closest(device, bvh, rays);
+        const auto blocked = occluded(device, bvh, rays);
+        uint differ = 0;
+        for (size_t i = 0; i < rays.size(); ++i) {
+            const Ray& r = rays[i];
+            RTCIntersectContext context;
+            rtcInitIntersectContext(&context);
+            RTCRayHit h{{r.origin.x, r.origin.y, r.origin.z, r.t_min, r.direction.x, r.direction.y, r.direction.z, 0, r.t_max, ~0u, 0, 0}, {}};
+            h.hit.geomID = ~0u;
+            rtcIntersect1(scene, &context, &h);
+            const bool hit = h.hit.geomID != ~0u;
+            EXPECT_EQ(blocked[i] != 0, hits[i].triangle != ~0u);
+            differ += hit != (hits[i].triangle != ~0u) || (hit && std::abs(hits[i].t - h.ray.tfar) > 1e-4f * h.ray.tfar + 1e-5f);
+        }
+        // Both are watertight, so they part only at silhouettes, where roundings decide, and where t is ill-conditioned.
+        EXPECT_LE(differ, 10u) << "of " << rays.size();
+    }
+    rtcReleaseScene(scene), rtcReleaseDevice(embree);
+}
+
+}  // namespace
+}  // namespace myriad::compute

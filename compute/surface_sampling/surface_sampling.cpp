@@ -1,0 +1,222 @@
+#include "compute/surface_sampling/surface_sampling.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+#include <tuple>
+
+namespace myriad::compute {
+namespace {
+
+using glm::dvec2, glm::dvec3, glm::uvec4, glm::vec3;
+
+double squared(dvec3 v) { return v.x * v.x + v.y * v.y + v.z * v.z; }
+
+struct Corner {
+    dvec3 position;
+    dvec2 uv;
+};
+Corner middle(const Corner& a, const Corner& b) { return {0.5 * (a.position + b.position), 0.5 * (a.uv + b.uv)}; }
+
+// A part of a triangle, on a curve that enters at one vertex and leaves at another.
+struct Piece {
+    Corner in, apex, out;
+
+    // Halves it across its longest edge. The second half begins where the first ends.
+    std::array<Piece, 2> halves() const {
+        const double across = squared(out.position - in.position);
+        const double rise = squared(apex.position - in.position), fall = squared(out.position - apex.position);
+        if (across >= rise && across >= fall) {
+            const Corner m = middle(in, out);
+            return {{{in, m, apex}, {apex, m, out}}};
+        }
+        if (rise >= fall) {
+            const Corner m = middle(in, apex);
+            return {{{in, out, m}, {m, apex, out}}};
+        }
+        const Corner m = middle(apex, out);
+        return {{{in, apex, m}, {m, in, out}}};
+    }
+
+    dvec3 center() const { return (in.position + apex.position + out.position) / 3.0; }
+    double area() const { return 0.5 * std::sqrt(squared(glm::cross(apex.position - in.position, out.position - in.position))); }
+
+    double longest() const {  // edge, squared
+        return std::max({squared(apex.position - in.position), squared(out.position - in.position), squared(out.position - apex.position)});
+    }
+    bool is_thin() const { return longest() > 6 * area(); }  // times 2.3: equilateral, 4: right isosceles
+
+    // The same with its longest edge between the first two corners: with the widest angle last, half-filled levels of the
+    // sequence below are at their most even.
+    Piece with_longest_first() const {
+        const double across = squared(out.position - in.position);
+        const double rise = squared(apex.position - in.position), fall = squared(out.position - apex.position);
+        return across >= rise && across >= fall ? Piece{in, out, apex} : rise >= fall ? *this : Piece{apex, out, in};
+    }
+
+    // Sample i of the low-discrepancy sequence of Basu and Owen (2015): van der Corput's in base 4, with the four
+    // similar triangles of a subdivision for digits.
+    dvec2 point(uint64_t i) const {
+        dvec2 a = in.uv, b = apex.uv, c = out.uv;
+        for (; i > 0; i >>= 2) {
+            const dvec2 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
+            switch (i & 3) {
+                case 0: a = bc, b = ca, c = ab; break;
+                case 1: b = ab, c = ca; break;
+                case 2: a = ab, c = bc; break;
+                case 3: a = ca, b = bc; break;
+            }
+        }
+        return (a + b + c) / 3.0;  // further digits are zeros: the middle's middle is the middle
+    }
+};
+
+// A number in [0, 1) from two; its quality hardly matters here.
+double hashed(uint32_t a, uint32_t b) {
+    uint64_t h = (uint64_t(a) << 32 | b) * 0x9e3779b97f4a7c15u;
+    h = (h ^ h >> 32) * 0xd6e8feb86659fd93u;
+    return double((h ^ h >> 32) >> 11) * 0x1p-53;
+}
+
+// Where a point of the unit cube is on Hilbert's curve of 2^63 cells (Skilling 2004).
+uint64_t hilbert(dvec3 p) {
+    std::array<uint32_t, 3> x;
+    for (int i = 0; i < 3; ++i) x[i] = uint32_t(std::clamp(p[i], 0.0, 1.0) * 2097151.0);
+    const uint32_t top = 1u << 20;
+    for (uint32_t bit = top; bit > 1; bit >>= 1)
+        for (uint32_t& v : x) {
+            const uint32_t flip = v & bit ? bit - 1 : 0, swap = v & bit ? 0 : (x[0] ^ v) & (bit - 1);
+            x[0] ^= flip ^ swap;
+            v ^= swap;
+        }
+    x[1] ^= x[0], x[2] ^= x[1];
+    uint32_t turn = 0;
+    for (uint32_t bit = top; bit > 1; bit >>= 1)
+        if (x[2] & bit) turn ^= bit - 1;
+    uint64_t code = 0;
+    for (int bit = 20; bit >= 0; --bit)
+        for (uint32_t v : x) code = code << 1 | ((v ^ turn) >> bit & 1);
+    return code;
+}
+
+struct Mesh {
+    std::span<const vec3> positions;
+    std::span<const uvec4> triangles;
+
+    Piece whole(uint32_t triangle) const {
+        const uvec4 t = triangles[triangle];
+        return {{dvec3(positions[t.x]), {0, 0}}, {dvec3(positions[t.y]), {1, 0}}, {dvec3(positions[t.z]), {0, 1}}};
+    }
+    double area(uint32_t triangle) const {
+        const double area = whole(triangle).area();
+        return std::isfinite(area) ? area : 0;
+    }
+};
+
+// What is sampled: a fat triangle, or a part of a thin one.
+struct Share {
+    uint64_t curve;     // where it is on a curve through space
+    double area;
+    uint32_t triangle;
+    uint32_t path;      // which halves it is, from the highest bit on, after a leading 1
+
+    Piece piece(const Mesh& mesh) const {
+        Piece piece = mesh.whole(triangle);
+        for (int bit = int(std::bit_width(path)) - 2; bit >= 0; --bit) piece = piece.halves()[path >> bit & 1];
+        return piece;
+    }
+};
+
+// Cuts what is thin and longer than a sample's share, unless it is worth less than a sixteenth of a sample: so there are at
+// most 32 n more shares than triangles. A row of needles would otherwise get its samples in a row: all in the middle.
+void cut(const Piece& piece, Share share, double sample_area, std::vector<Share>& shares, std::vector<dvec3>& centers) {
+    if (share.area < sample_area / 16 || share.path >> 30 || piece.longest() < 2 * sample_area || !piece.is_thin()) {
+        shares.push_back(share);
+        centers.push_back(piece.center());
+        return;
+    }
+    const auto halves = piece.halves();
+    for (uint32_t i = 0; i < 2; ++i) cut(halves[i], {0, 0.5 * share.area, share.triangle, 2 * share.path + i}, sample_area, shares, centers);
+}
+
+// All shares of the surface along Hilbert's curve: systematic samples of small neighbours are then even, too.
+std::vector<Share> ordered_shares(const Mesh& mesh, double sample_area) {
+    std::vector<Share> shares;
+    std::vector<dvec3> centers;
+    shares.reserve(mesh.triangles.size()), centers.reserve(mesh.triangles.size());
+    for (uint32_t t = 0; t < mesh.triangles.size(); ++t)
+        if (const double area = mesh.area(t); area > 0) cut(mesh.whole(t), {0, area, t, 1}, sample_area, shares, centers);
+    dvec3 low(HUGE_VAL), high(-HUGE_VAL);
+    for (const dvec3& c : centers) low = glm::min(low, c), high = glm::max(high, c);
+    const dvec3 extent = high - low;
+    const double scale = 1 / std::max({extent.x, extent.y, extent.z, 1e-300});
+    for (size_t i = 0; i < shares.size(); ++i) shares[i].curve = hilbert((centers[i] - low) * scale);
+    std::sort(shares.begin(), shares.end(), [](const Share& a, const Share& b) {
+        return std::tie(a.curve, a.triangle, a.path) < std::tie(b.curve, b.triangle, b.path);
+    });
+    return shares;
+}
+
+void sample_share(const Mesh& mesh, const Share& share, uint64_t count, double expected, uint32_t seed, SurfaceSample* samples) {
+    const Piece piece = share.piece(mesh).with_longest_first();
+    for (uint64_t i = 0; i < count; ++i) {
+        dvec2 uv = piece.point(i);
+        if (expected < 0.5) {  // what stands for several of its like has no reason to be hit in the middle
+            const double r = std::sqrt(hashed(share.triangle, seed + share.path)), s = hashed(~share.triangle, seed + share.path);
+            const dvec2 anywhere = (1 - r) * piece.in.uv + r * (1 - s) * piece.apex.uv + r * s * piece.out.uv;
+            uv = glm::mix(anywhere, uv, 2 * expected);
+        }
+        samples[i] = {share.triangle, float(uv.x), float(uv.y)};
+    }
+}
+
+// Where nothing has area: vertices in turn, of finite triangles.
+std::vector<SurfaceSample> sample_vertices(const Mesh& mesh, uint64_t n) {
+    std::vector<uint32_t> finite;
+    for (uint32_t t = 0; t < mesh.triangles.size(); ++t)
+        if (const Piece p = mesh.whole(t); std::isfinite(squared(p.in.position) + squared(p.apex.position) + squared(p.out.position)))
+            finite.push_back(t);
+    std::vector<SurfaceSample> samples(finite.empty() ? 0 : n);
+    for (size_t i = 0; i < samples.size(); ++i) {
+        const size_t corner = i / finite.size() % 3;
+        samples[i] = {finite[i % finite.size()], corner == 1 ? 1.0f : 0.0f, corner == 2 ? 1.0f : 0.0f};
+    }
+    return samples;
+}
+
+}  // namespace
+
+SurfaceSampling sample_surface(std::span<const vec3> positions, std::span<const uvec4> triangles, uint32_t log2_count, uint32_t seed) {
+    assert(log2_count < 32 && triangles.size() < uint64_t(1) << 32);
+    SurfaceSampling result;
+    const uint64_t n = uint64_t(1) << log2_count;
+    const Mesh mesh{positions, triangles};
+    for (uint32_t t = 0; t < triangles.size(); ++t) result.area += mesh.area(t);
+    if (!(result.area > 0)) {
+        result.samples = sample_vertices(mesh, n);
+        return result;
+    }
+    result.samples.resize(n);
+    const double sample_area = result.area / double(n);
+    result.radius = float(surface_sample_cover * std::sqrt(sample_area / std::numbers::pi));
+
+    // Systematic sampling: sample i is at (i + phase) / n of the cumulative area, so each share gets the floor or the
+    // ceiling of what it is due.
+    const std::vector<Share> shares = ordered_shares(mesh, sample_area);
+    const double phase = hashed(seed, 0);
+    double sum = 0;
+    uint64_t first = 0;
+    for (const Share& share : shares) {
+        sum += share.area;
+        const bool last = &share == &shares.back();
+        const uint64_t end = last ? n : std::clamp(uint64_t(std::max(0.0, std::ceil(sum / sample_area - phase))), first, n);
+        if (end > first) sample_share(mesh, share, end - first, share.area / sample_area, seed, &result.samples[first]);
+        first = end;
+    }
+    return result;
+}
+
+}  // namespace myriad::compute

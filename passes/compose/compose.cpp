@@ -1,0 +1,26 @@
+#include "passes/compose/compose.hpp"
+
+#include "passes/kernels.hpp"
+
+namespace myriad::passes {
+
+ComposePass::ComposePass(engine::Device& device, uint32_t width, uint32_t height)
+    : compose_(device, engine::passes_kernels, "compose/compose"), indirect_(device, "images", "indirect", uint64_t(width) * height),
+      beauty_(device, "images", "beauty", uint64_t(width) * height) {}
+
+void ComposePass::record(engine::Recorder& recorder, const GBuffer& gbuffer, const engine::Array<vec4>* irradiance,
+                         const engine::Array<vec4>* direct) {
+    recorder.dispatch(compose_,
+                      ComposePush{.albedo = recorder.read(gbuffer.albedo),
+                                  .emitted = recorder.read(gbuffer.emitted),
+                                  .irradiance = irradiance ? recorder.read(*irradiance) : Float4s{},
+                                  .direct = direct ? recorder.read(*direct) : Float4s{},
+                                  .indirect = recorder.write(indirect_),
+                                  .beauty = recorder.write(beauty_),
+                                  .count = uint(gbuffer.pixels()),
+                                  .has_irradiance = irradiance != nullptr,
+                                  .has_direct = direct != nullptr},
+                      gbuffer.pixels());
+}
+
+}  // namespace myriad::passes

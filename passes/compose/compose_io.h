@@ -1,0 +1,17 @@
+// What the compose kernel and its host share.
+#ifndef MYRIAD_PASSES_COMPOSE_IO_H
+#define MYRIAD_PASSES_COMPOSE_IO_H
+
+#include "engine/shared.h"
+
+MYRIAD_BEGIN
+struct ComposePush {
+    Float4s albedo, emitted;
+    Float4s irradiance;     // with has_irradiance
+    Float4s direct;         // with has_direct
+    Float4s indirect, beauty;
+    uint count, has_irradiance, has_direct;
+};
+MYRIAD_END
+
+#endif

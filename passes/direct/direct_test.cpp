@@ -1,0 +1,160 @@
+#include "passes/direct/direct.hpp"
+
+#include <numbers>
+
+#include "engine/testing.hpp"
+#include "passes/direct/direct_ref.hpp"
+#include "passes/geometry/test_scene.hpp"
+
+namespace myriad::passes {
+namespace {
+
+using glm::dvec3;
+using Type = scenes::Light::Type;
+
+class DirectTest : public engine::DeviceTest {
+protected:
+    struct Result {
+        std::vector<vec4> radiance, positions;
+    };
+    Result run(const TestScene& test, uint32_t width, uint32_t height, uint32_t lights_a_dispatch = 0) {
+        const UploadedScene scene(device, test);
+        EXPECT_EQ(DirectPass::needed(scene.lights), !test.scene.lights.empty());
+        GBufferPass gbuffer(device, width, height);
+        DirectPass direct(device, width, height, lights_a_dispatch);
+        engine::Recorder recorder(device);
+        gbuffer.record(recorder, scene.geometry, scene.bvh, test.scene.cameras[0]);
+        direct.record(recorder, gbuffer.gbuffer(), scene.bvh, scene.lights);
+        recorder.submit_and_wait();
+        EXPECT_EQ(engine::download(device, direct.exhausted())[0], 0u);
+        return {engine::download(device, direct.radiance()), engine::download(device, gbuffer.gbuffer().positions)};
+    }
+
+    // A floor at y = 0 that a camera looks down on.
+    static TestScene floor(const vec3& albedo) {
+        TestScene test;
+        test.quad({-50, 0, -50}, {0, 0, 100}, {100, 0, 0}, test.material(albedo));
+        test.look({0, 5, 0.01f}, vec3(0), 1.2f);
+        return test;
+    }
+
+    static size_t differing(const TestScene& test, const Result& got, uint32_t width, uint32_t height) {
+        const auto expected = direct_ref(test.scene, test.triangles, gbuffer_ref(test.scene, test.triangles, test.scene.cameras[0], width, height));
+        size_t wrong = 0;
+        for (size_t i = 0; i < expected.size(); ++i)
+            wrong += !(glm::length(expected[i] - dvec3(got.radiance[i])) <= 1e-5 + 5e-4 * glm::length(expected[i]));
+        return wrong;
+    }
+};
+
+TEST_F(DirectTest, point_light_over_a_plane) {
+    const vec3 albedo(0.8f, 0.5f, 0.1f), intensity(10, 20, 30);
+    TestScene test = floor(albedo);
+    test.light(Type::point, {1, 2, -1}, {0, 0, -1}, intensity);
+    const auto got = run(test, 31, 17);
+    for (size_t i = 0; i < got.radiance.size(); ++i) {
+        const dvec3 d = dvec3(1, 2, -1) - dvec3(got.positions[i]);
+        const dvec3 expected = dvec3(albedo) / std::numbers::pi * dvec3(intensity) * (d.y / glm::length(d)) / glm::dot(d, d);
+        ASSERT_LE(glm::length(dvec3(got.radiance[i]) - expected), 1e-5 * glm::length(expected) + 1e-9) << i;
+    }
+}
+
+TEST_F(DirectTest, directional_light_is_irradiance_across_its_way) {
+    TestScene test = floor(vec3(0.5f));
+    test.light(Type::directional, vec3(0), {1, -2, 0.5f}, vec3(3, 2, 1));
+    const double cosine = 2 / std::sqrt(1 + 4 + 0.25);
+    for (const vec4& radiance : run(test, 9, 5).radiance)
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(radiance[c], 0.5 / std::numbers::pi * cosine * (3 - c), 1e-6);
+}
+
+TEST_F(DirectTest, spot_falls_off_as_the_extension_recommends) {
+    // By hand: cos_inner 0.9, cos_outer 0.8; a cosine of 0.85 is half-way, hence a quarter.
+    scenes::Light by_hand{Type::spot, "", vec3(0), vec3(0, 0, -1), vec3(1), std::acos(0.9f), std::acos(0.8f)};
+    EXPECT_NEAR(incident_ref(by_hand, {std::sqrt(1 - 0.85 * 0.85), 0, -0.85}).irradiance.x, 0.25, 1e-6);
+
+    for (const auto& [inner, outer] : {std::pair{0.0f, 0.785398f}, {0.3f, 0.6f}, {0.5f, 0.5f}, {0.0f, 0.02f}, {0.2f, 1.57f}}) {
+        TestScene test = floor(vec3(0.9f));
+        test.light(Type::spot, {0.5f, 3, 0}, {0.1f, -1, 0.2f}, vec3(50), inner, outer);
+        const auto got = run(test, 61, 61);
+        EXPECT_LE(differing(test, got, 61, 61), inner == outer ? 12u : 0u) << inner << " " << outer;  // the step's edge may fall either way
+    }
+}
+
+TEST_F(DirectTest, an_occluder_casts_its_shadow) {
+    TestScene test = floor(vec3(1));
+    test.quad({-1, 1, -1}, {0, 0, 2}, {2, 0, 0}, test.material(vec3(0.5f)));
+    test.light(Type::point, {0, 2, 0}, {0, 0, -1}, vec3(10));
+    test.look({8, 6, 0}, vec3(0));
+    const auto got = run(test, 64, 64);
+    size_t lit = 0, dark = 0;
+    for (size_t i = 0; i < got.radiance.size(); ++i) {
+        const vec4 p = got.positions[i];
+        const float across = std::max(std::abs(p.x), std::abs(p.z));
+        // The shadow of a half-width of 1 at half the height is 2 wide each way.
+        if (p.w == 0 || p.y > 0.5f || std::abs(across - 2) < 1e-3f) continue;
+        EXPECT_EQ(got.radiance[i].x > 0, across > 2) << p.x << " " << p.z;
+        (across > 2 ? lit : dark) += 1;
+    }
+    EXPECT_GT(lit, 100u);
+    EXPECT_GT(dark, 100u);
+}
+
+TEST_F(DirectTest, equals_the_twin_on_random_scenes) {
+    std::uniform_real_distribution<float> unit(-1, 1);
+    for (uint32_t lights : {1u, 2u, 7u, 70u}) {
+        TestScene test;
+        test.material({0.8f, 0.6f, 0.4f});
+        test.material({0.2f, 0.9f, 0.7f}, vec3(1), true);
+        test.soup(150, 5, random);
+        for (uint32_t i = 0; i < lights; ++i)
+            test.light(Type(i % 3), 6.0f * vec3(unit(random), unit(random), unit(random)), vec3(unit(random), unit(random), 0.1f),
+                       vec3(5, 10, 3) / float(lights), 0.2f, 1.2f);
+        test.look({0, 0, 10}, vec3(0), 1);
+        const auto got = run(test, 48, 36);
+        EXPECT_LE(differing(test, got, 48, 36), 48u * 36 / 50) << lights;
+        // Spread over dispatches, as on devices that end loops silently: the same sums in the same order but for groups.
+        for (uint32_t some : {1u, 3u, 69u}) {
+            const auto spread = run(test, 48, 36, some);
+            for (size_t i = 0; i < got.radiance.size(); ++i)
+                ASSERT_LE(glm::length(got.radiance[i] - spread.radiance[i]), 1e-5f * glm::length(got.radiance[i])) << some << " " << i;
+        }
+    }
+}
+
+TEST_F(DirectTest, lights_in_hard_places_give_finite_light) {
+    TestScene test = floor(vec3(1));
+    test.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 0);
+    for (const vec3& at : {vec3(0), vec3(0, 0, 0.01f), vec3(0, 5, 0.01f), vec3(1e6f), vec3(0, 1e-20f, 0)}) {
+        test.light(Type::point, at, {0, 0, -1}, vec3(1));
+        test.light(Type::spot, at, {0, 0, -1}, vec3(1), 0, 0);
+    }
+    test.light(Type::directional, vec3(0), {1, 0, 0}, vec3(1));  // grazing
+    test.light(Type::point, {0, 1, 0}, {0, 0, -1}, vec3(0));
+    for (const vec4& radiance : run(test, 33, 33).radiance) {
+        ASSERT_TRUE(std::isfinite(radiance.x + radiance.y + radiance.z));
+        ASSERT_GE(std::min(radiance.x, std::min(radiance.y, radiance.z)), 0.0f);
+    }
+}
+
+TEST_F(DirectTest, no_light_and_nothing_to_see) {
+    TestScene dark = floor(vec3(1));
+    for (const vec4& radiance : run(dark, 8, 8).radiance) EXPECT_EQ(radiance, vec4(0));
+    TestScene empty;
+    empty.material(vec3(1));
+    empty.light(Type::point, vec3(0), {0, 0, -1}, vec3(1));
+    empty.light(Type::directional, vec3(0), {0, 0, -1}, vec3(1));
+    empty.look({0, 0, 1}, vec3(0));
+    for (const vec4& radiance : run(empty, 8, 8).radiance) EXPECT_EQ(radiance, vec4(0));
+}
+
+TEST_F(DirectTest, comparator_sees_a_wrong_pixel) {
+    TestScene test = floor(vec3(1));
+    test.light(Type::point, {0, 2, 0}, {0, 0, -1}, vec3(10));
+    auto got = run(test, 8, 8);
+    ASSERT_EQ(differing(test, got, 8, 8), 0u);
+    got.radiance[9] *= 1.01f;
+    EXPECT_EQ(differing(test, got, 8, 8), 1u);
+}
+
+}  // namespace
+}  // namespace myriad::passes

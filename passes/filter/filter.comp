@@ -1,0 +1,32 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// One invocation a pixel.
+#include "engine/kernel.glsl"
+#include "passes/filter/filter_io.h"
+layout(push_constant, scalar) uniform Push { FilterPush push; };
+
+void main() {
+    const uint width = push.gbuffer.width, height = push.gbuffer.height;
+    const uint pixel = thread_index();
+    if (pixel >= width * height) return;
+    const vec4 position = push.gbuffer.positions.at[pixel];
+    vec3 sum = vec3(0.0f);
+    if (position.w != 0.0f) {
+        const vec3 n = unpack_direction(push.gbuffer.normals.at[pixel].x);
+        const float scale = position.w * push.pixel_angle * float(push.block);
+        const int x = int(pixel % width), y = int(pixel / width), reach = filter_reach(push.block);
+        float total = 0.0f;
+        for (int dy = max(-reach, -y); dy <= min(reach, int(height) - 1 - y); ++dy)
+            for (int dx = max(-reach, -x); dx <= min(reach, int(width) - 1 - x); ++dx) {
+                const uint i = uint(y + dy) * width + uint(x + dx);
+                const vec4 q = push.gbuffer.positions.at[i];
+                if (q.w == 0.0f) continue;
+                const float w = filter_tap(dx, push.block) * filter_tap(dy, push.block) *
+                                filter_alike(position.xyz, n, q.xyz, unpack_direction(push.gbuffer.normals.at[i].x), scale);
+                sum += w * push.irradiance.at[i].xyz;
+                total += w;
+            }
+        sum /= total;  // never 0: the pixel itself has weight 1
+    }
+    push.filtered.at[pixel] = vec4(sum, 0.0f);
+}

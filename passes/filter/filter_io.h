@@ -1,0 +1,33 @@
+// What the filter kernel, its host and its twin share.
+#ifndef MYRIAD_PASSES_FILTER_IO_H
+#define MYRIAD_PASSES_FILTER_IO_H
+
+#include "passes/gbuffer/gbuffer_io.h"
+
+MYRIAD_BEGIN
+struct FilterPush {
+    GBufferRef gbuffer;
+    Float4s irradiance;
+    Float4s filtered;
+    uint block;            // k
+    float pixel_angle;     // the height of a pixel at distance 1 along the camera's axis
+};
+
+// Weight of an offset along one axis: k + 1 taps for blocks of k, the two on the rim half. (Odd k need no rim: k taps.)
+MYRIAD_FN int filter_reach(uint block) { return int(block / 2u); }
+MYRIAD_FN float filter_tap(int offset, uint block) {
+    return block % 2u == 0u && (offset == filter_reach(block) || offset == -filter_reach(block)) ? 0.5f : 1.0f;
+}
+
+// How alike two surface points are: p, n of the pixel; q, m of its neighbour. `scale` in metres: the window's width there.
+MYRIAD_FN float filter_alike(vec3 p, vec3 n, vec3 q, vec3 m, float scale) {
+    const float c = max(dot(n, m), 0.0f);
+    const float c2 = c * c;
+    const float c4 = c2 * c2;
+    const float off = abs(dot(n, q - p)) / scale;
+    const float near = max(1.0f - off * off, 0.0f);
+    return c4 * c4 * c4 * c4 * near * near;
+}
+MYRIAD_END
+
+#endif

@@ -1,0 +1,107 @@
+// One frame, from triangles to an image. frame.cpp reads top to bottom.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "passes/compose/compose.hpp"
+#include "passes/direct/direct.hpp"
+#include "passes/filter/filter.hpp"
+#include "passes/gather/gather.hpp"
+#include "passes/gbuffer/gbuffer.hpp"
+#include "passes/geometry/geometry.hpp"
+#include "passes/geometry/lights.hpp"
+#include "passes/maps/maps.hpp"
+#include "passes/tonemap/tonemap.hpp"
+#include "passes/vpl/vpl.hpp"
+
+namespace myriad::passes {
+
+enum class Visibility {
+    manylods,  // maps from cuts through the BSH
+    rays,      // exact: the same-VPL reference
+    none,      // every VPL reaches every receiver
+};
+
+struct FrameSettings {
+    uint32_t width = 640, height = 360;
+    uint32_t vpls = 4096;         // the most VPLs; 0: no indirect light
+    uint32_t bounces = 1;         // diffuse reflections of light before it reaches what the camera sees
+    uint32_t seed = 1;
+    uint32_t subset = 256;        // VPLs that each pixel gathers, about; 0: all
+    bool filter = true;
+    Visibility visibility = Visibility::manylods;
+    MapSettings maps;
+    uint32_t log2_samples = 19;   // surface samples, leaves of the BSH
+    float vpl_bound = 0;          // bound of the geometry term, 1/m^2; 0: pi * vpls / area (passes/gather)
+    float bias = 0.5f;            // receiver bias, half diagonals of a texel
+    // Called now and then with a stage and how much of it is done, 0 to 1.
+    std::function<void(const std::string& stage, double done)> progress;
+};
+
+struct SceneSize {
+    uint64_t triangles = 0, samples = 0, bsh_blocks = 0, bvh_nodes = 0, lights = 0;
+};
+
+struct FrameCounters {
+    std::optional<uint64_t> vpls;       // alive
+    std::optional<MapCounters> maps;    // visibility manylods
+};
+
+class Frame {
+public:
+    // Uploads the scene and builds what the settings need. Throws InputError for settings out of range, OutOfMemory.
+    Frame(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles, const FrameSettings& settings);
+
+    // Renders into the arrays below. Throws OutOfMemory when lists cannot grow as they must.
+    void render(const scenes::Camera& camera);
+
+    // 8-bit sRGB of the last image; RGBA8 in words.
+    std::vector<uint> tonemapped(float exposure);
+
+    const GBuffer& gbuffer() const { return gbuffer_.gbuffer(); }
+    const engine::Array<vec4>& beauty() const { return compose_.beauty(); }
+    const engine::Array<vec4>& indirect() const { return compose_.indirect(); }
+    const engine::Array<vec4>* direct() const { return direct_ ? &direct_->radiance() : nullptr; }  // null: no punctual lights
+    const VplPass* vpls() const { return vpl_ ? &*vpl_ : nullptr; }                              // null: nothing shines, or --vpls 0
+    const compute::Bsh* tree() const { return tree_ ? &*tree_ : nullptr; }
+
+    const FrameSettings& settings() const { return settings_; }
+    uint32_t block() const { return block_; }       // VPL sets are block x block
+    float vpl_bound() const { return vpl_bound_; }  // 1/m^2, as used
+    const SceneSize& size() const { return size_; }
+    const FrameCounters& counters() const { return counters_; }
+    const std::vector<engine::PassTime>& times() const { return times_; }  // of the last frame
+
+private:
+    void gather_indirect(float camera_pixel_angle);
+    void report(const std::string& stage, double done) const;
+
+    engine::Device& device_;
+    FrameSettings settings_;
+    engine::Recorder recorder_;
+    Geometry geometry_;
+    LightTable lights_;
+    compute::Bvh bvh_;
+    float reach_ = 0, vpl_bound_ = 0;
+    uint32_t block_ = 1;
+    // Passes that the scene or the settings do not need do not exist.
+    GBufferPass gbuffer_;
+    std::optional<DirectPass> direct_;
+    std::optional<VplPass> vpl_;
+    std::optional<compute::Bsh> tree_;
+    std::optional<ViewMaps> maps_;
+    std::optional<GatherPass> gather_;
+    std::optional<FilterPass> filter_;
+    ComposePass compose_;
+    std::optional<TonemapPass> tonemap_;
+    engine::Array<uint> exhausted_, host_words_;
+    SceneSize size_;
+    FrameCounters counters_;
+    std::vector<engine::PassTime> times_;
+};
+
+}  // namespace myriad::passes

@@ -1,0 +1,53 @@
+// Irradiance from VPLs; see README.md.
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "compute/raytrace/bvh.hpp"
+#include "passes/gather/gather_io.h"
+#include "passes/gbuffer/gbuffer.hpp"
+
+namespace myriad::passes {
+
+enum class GatherVisibility { none, maps, rays };
+
+// The VPLs, and how to sum them up.
+struct GatherInputs {
+    const GBuffer& gbuffer;
+    const engine::Array<Vpl>& vpls;
+    const engine::Array<uint>& count;  // on the device
+    uint32_t block = 1;                // k: each pixel gathers one of k x k sets
+    float bound = 1e30f;               // 1/m^2
+};
+
+class GatherPass {
+public:
+    GatherPass(engine::Device& device, GatherVisibility visibility, uint32_t width, uint32_t height);
+
+    void clear(engine::Recorder& recorder) { recorder.fill(irradiance_, 0); }
+
+    // Adds VPLs [first, first + limit); `first` is a multiple of block * block, so that a VPL's set does not depend on how they are
+    // split. Adding them in order gives the same bits however they are split.
+    // maps: `atlas` holds the maps of these VPLs. `bias` in texels.
+    void record_maps(engine::Recorder& recorder, const GatherInputs& in, uint32_t first, uint32_t limit, const engine::Array<uint>* atlas,
+                     uint32_t map_size, float bias);
+    // rays: `reach` is the scene's largest absolute coordinate.
+    void record_rays(engine::Recorder& recorder, const GatherInputs& in, uint32_t first, uint32_t limit, const compute::Bvh& bvh,
+                     float reach, const engine::Array<uint>& status);
+
+    // The most VPLs that one recording may take, so that no invocation's loops exceed the device's limit.
+    uint32_t max_vpls(uint32_t block) const;
+
+    const engine::Array<vec4>& irradiance() const { return irradiance_; }  // W/m^2, rgb
+
+private:
+    uint64_t threads(const GatherInputs& in) const;
+
+    engine::Device& device_;
+    GatherVisibility visibility_;
+    engine::Program program_;
+    engine::Array<vec4> irradiance_;
+};
+
+}  // namespace myriad::passes

@@ -1,0 +1,97 @@
+// What the gather kernels, their host and their twin share.
+#ifndef MYRIAD_PASSES_GATHER_IO_H
+#define MYRIAD_PASSES_GATHER_IO_H
+
+#include "compute/views/paraboloid.h"
+#include "passes/gbuffer/gbuffer_io.h"
+#include "passes/vpl/vpl_io.h"
+
+MYRIAD_BEGIN
+struct GatherPush {
+    GBufferRef gbuffer;
+    Vpls vpls;
+    Uints count;              // how many VPLs there are
+    Uints atlas;              // maps only: of VPLs [first_map, …)
+    Float4s irradiance;
+    uint first, limit;        // VPLs [first, min(first + limit, count)); first is a multiple of block^2
+    uint block;               // k: sets of VPLs, and pixels of a block, are k x k
+    uint map_size, first_map; // maps only
+    float bound;              // 1/m^2
+    float bias;               // maps only, texels
+};
+
+// "rays": the same, with a BVH in place of the atlas.
+struct GatherRaysPush {
+    GBufferRef gbuffer;
+    Vpls vpls;
+    Uints count;
+    Float4s irradiance;
+    BvhRef bvh;
+    Uints status;             // status.at[0] is set when a traversal ran out of its loop budget
+    uint first, limit, block;
+    float bound;
+    float reach;              // the scene's largest absolute coordinate, for ray_origin
+};
+
+// The part of the transfer that needs no visibility: min(G, bound), or 0 where either side faces away. x is the receiver's
+// position, n its normal.
+MYRIAD_FN float bounded_geometry(vec3 x, vec3 n, vec3 vpl_position, vec3 vpl_normal, float bound) {
+    const vec3 d = vpl_position - x;
+    const float d2 = dot(d, d);
+    const float cos_receiver = dot(n, d);        // times |d|
+    const float cos_vpl = -dot(vpl_normal, d);   // times |d|
+    if (!(d2 > 0.0f && cos_receiver > 0.0f && cos_vpl > 0.0f)) return 0.0f;
+    // Divided one by one: d^4 would leave the range of floats at distances that are still fine.
+    return min((cos_receiver / d2) * (cos_vpl / d2), bound);
+}
+
+// Where a VPL at `vpl_position` looks for the receiver x with geometric normal n_g in its map, and the distance up to which a
+// surface in that texel hides it (metres).
+struct MapQuery {
+    uint texel;
+    float distance;
+};
+MYRIAD_FN MapQuery map_query(vec3 x, vec3 n_g, vec3 vpl_position, uint size, float bias) {
+    const vec3 d = x - vpl_position;
+    const vec2 uv = project(d);
+    const uint half_index = half_of(d);
+    const uint tx = texel_coordinate(uv.x, size);
+    const uint ty = texel_coordinate(uv.y, size);
+    const vec2 middle = texel_middle(tx, ty, size);
+    const float dist = sqrt(dot(d, d));
+    // Where the texel's ray meets the receiver's plane; only nearer than the receiver itself counts, since elsewhere another
+    // surface may have taken over.
+    const float on_plane = dot(d, n_g) / dot(unproject(half_index, middle), n_g);
+    const float depth = on_plane > 0.0f && on_plane < dist ? on_plane : dist;
+    MapQuery q;
+    q.texel = texel_index(half_index, tx, ty, size);
+    q.distance = depth - bias * dist * texel_angle(uv, size);
+    return q;
+}
+MYRIAD_FN bool map_hides(float stored_depth, MapQuery q) { return stored_depth < q.distance; }
+
+// Which pixel a thread works on, so that the threads of a workgroup share their set: sets are laid out one after the other, each
+// in whole workgroups. `set` is uniform over the workgroup.
+struct GatherPixel {
+    uint x, y, set;
+    bool inside;
+};
+MYRIAD_FN uint gather_groups_a_set(uint width, uint height, uint block, uint workgroup_size) {
+    const uint columns = (width + block - 1u) / block;
+    const uint rows = (height + block - 1u) / block;
+    return (columns * rows + workgroup_size - 1u) / workgroup_size;
+}
+MYRIAD_FN GatherPixel gather_pixel(uint workgroup, uint lane, uint workgroup_size, uint width, uint height, uint block) {
+    const uint groups = gather_groups_a_set(width, height, block, workgroup_size);
+    const uint columns = (width + block - 1u) / block;
+    const uint index = (workgroup % groups) * workgroup_size + lane;
+    GatherPixel p;
+    p.set = workgroup / groups;
+    p.x = (index % columns) * block + p.set % block;
+    p.y = (index / columns) * block + p.set / block;
+    p.inside = p.set < block * block && p.x < width && p.y < height;
+    return p;
+}
+MYRIAD_END
+
+#endif

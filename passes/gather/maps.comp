@@ -1,0 +1,38 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Gathers with visibility from the atlas, or with none (specialisation constant 2). One invocation a pixel.
+#include "engine/kernel.glsl"
+#include "passes/gather/gather_io.h"
+layout(constant_id = 2) const bool use_maps = true;
+layout(push_constant, scalar) uniform Push { GatherPush push; };
+
+void main() {
+    const GatherPixel pixel = gather_pixel(workgroup_index(), gl_LocalInvocationIndex, gl_WorkGroupSize.x, push.gbuffer.width,
+                                           push.gbuffer.height, push.block);
+    if (!pixel.inside) return;
+    const uint p = pixel.y * push.gbuffer.width + pixel.x;
+    const vec4 position = push.gbuffer.positions.at[p];
+    if (position.w == 0.0f) return;
+    const vec3 x = position.xyz;
+    const uvec2 normals = push.gbuffer.normals.at[p];
+    const vec3 n = unpack_direction(normals.x);
+    const vec3 n_g = unpack_direction(normals.y);
+
+    const uint sets = push.block * push.block;
+    const uint end = min(push.first + push.limit, push.count.at[0]);
+    vec3 sum = vec3(0.0f);
+    // The index depends on the workgroup alone, so a VPL is read once for all its lanes.
+    for (uint i = push.first + pixel.set; i < end; i += sets) {
+        const Vpl vpl = push.vpls.at[i];
+        const float g = bounded_geometry(x, n, vpl.position, unpack_direction(vpl.normal), push.bound);
+        if (g > 0.0f) {
+            bool hidden = false;
+            if (use_maps) {
+                const MapQuery q = map_query(x, n_g, vpl.position, push.map_size, push.bias);
+                hidden = map_hides(uintBitsToFloat(push.atlas.at[(i - push.first_map) * map_texels(push.map_size) + q.texel]), q);
+            }
+            if (!hidden) sum += vpl.flux * g;
+        }
+    }
+    push.irradiance.at[p] += vec4(sum * (float(sets) / 3.14159265f), 0.0f);
+}

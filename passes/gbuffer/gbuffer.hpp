@@ -1,0 +1,42 @@
+// What the camera sees, per pixel; see README.md.
+#pragma once
+
+#include "compute/raytrace/bvh.hpp"
+#include "passes/gbuffer/gbuffer_io.h"
+#include "passes/geometry/geometry.hpp"
+
+namespace myriad::passes {
+
+// glTF's camera: yfov is the whole vertical angle; pixels are square.
+CameraPush camera_push(const scenes::Camera& camera, uint32_t width, uint32_t height);
+
+struct GBuffer {
+    GBuffer(engine::Device& device, uint32_t width, uint32_t height);
+    GBufferRef read(engine::Recorder& recorder) const;
+    uint64_t pixels() const { return uint64_t(width) * height; }
+
+    uint32_t width, height;
+    engine::Array<vec4> positions;  // see GBufferRef
+    engine::Array<uvec2> normals;
+    engine::Array<vec4> albedo;
+    engine::Array<vec4> emitted;    // rgb: radiance that the surface itself sends to the camera
+};
+
+class GBufferPass {
+public:
+    GBufferPass(engine::Device& device, uint32_t width, uint32_t height);
+
+    void record(engine::Recorder& recorder, const Geometry& geometry, const compute::Bvh& bvh, const scenes::Camera& camera);
+
+    const GBuffer& gbuffer() const { return gbuffer_; }
+    // [0] != 0: a ray's walk met the device's limit on loops (trace.glsl), and the result cannot be trusted.
+    const engine::Array<uint>& exhausted() const { return exhausted_; }
+
+private:
+    engine::Program trace_, shade_;
+    GBuffer gbuffer_;
+    engine::Array<RayHitRecord> hits_;
+    engine::Array<uint> exhausted_;
+};
+
+}  // namespace myriad::passes

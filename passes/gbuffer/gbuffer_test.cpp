@@ -1,0 +1,182 @@
+#include "passes/gbuffer/gbuffer.hpp"
+
+#include "engine/testing.hpp"
+#include "passes/gbuffer/gbuffer_ref.hpp"
+#include "passes/geometry/test_scene.hpp"
+
+namespace myriad::passes {
+namespace {
+
+using glm::dvec3;
+
+class GBufferTest : public engine::DeviceTest {
+protected:
+    struct Pixels {
+        std::vector<vec4> positions, albedo, emitted;
+        std::vector<uvec2> normals;
+    };
+    Pixels run(const TestScene& test, uint32_t width, uint32_t height) {
+        const UploadedScene scene(device, test);
+        GBufferPass pass(device, width, height);
+        engine::Recorder recorder(device);
+        pass.record(recorder, scene.geometry, scene.bvh, test.scene.cameras[0]);
+        recorder.submit_and_wait();
+        EXPECT_EQ(engine::download(device, pass.exhausted())[0], 0u);
+        const GBuffer& g = pass.gbuffer();
+        return {engine::download(device, g.positions), engine::download(device, g.albedo), engine::download(device, g.emitted),
+                engine::download(device, g.normals)};
+    }
+
+    // How many pixels differ from the twin's by more than rounding. Rays along edges may: they meet another triangle.
+    static size_t differing(const TestScene& test, const Pixels& got, uint32_t width, uint32_t height, double scale) {
+        const auto expected = gbuffer_ref(test.scene, test.triangles, test.scene.cameras[0], width, height);
+        size_t wrong = 0;
+        for (size_t i = 0; i < expected.size(); ++i) {
+            const PixelRef& e = expected[i];
+            const auto far = [](const dvec3& a, const dvec3& b, double tolerance) { return !(glm::length(a - b) <= tolerance); };
+            bool bad = (e.depth > 0) != (got.positions[i].w > 0);
+            if (e.depth > 0)
+                bad = bad || far(e.surface.position, dvec3(got.positions[i]), 3e-6 * scale) ||
+                      !(std::abs(e.depth - double(got.positions[i].w)) <= 3e-6 * scale) ||
+                      far(e.surface.shading_normal, dvec3(unpack_direction(got.normals[i].x)), 2e-4) ||
+                      far(e.surface.geometric_normal, dvec3(unpack_direction(got.normals[i].y)), 2e-4) ||
+                      far(e.surface.albedo, dvec3(got.albedo[i]), 1e-4) || far(e.surface.emission, dvec3(got.emitted[i]), 1e-4);
+            else
+                bad = bad || got.positions[i] != vec4(0) || got.normals[i] != uvec2(0) || got.albedo[i] != vec4(0) || got.emitted[i] != vec4(0);
+            wrong += bad;
+        }
+        return wrong;
+    }
+
+    // All that a material can be.
+    void materials(TestScene& test) {
+        using enum scenes::Texture::Wrap;
+        test.material({0.8f, 0.5f, 0.2f});
+        test.material({0.1f, 0.9f, 0.3f}, {1, 2, 3});
+        test.material({0.7f, 0.7f, 0.7f}, {3, 1, 0.5f}, true);
+        for (const auto& [u, v] : {std::pair{repeat, repeat}, {clamp, mirror}, {mirror, clamp}, {mirror, repeat}}) {
+            auto& m = test.scene.materials[test.material({0.9f, 1, 0.8f}, {1, 1, 2}, u == mirror)];
+            m.metallic = 0.6f;
+            m.base_color_texture = test.texture(7, 5, random, u, v);
+            m.metallic_roughness_texture = test.texture(1, 3, random, v, u);
+            m.emissive_texture = test.texture(16, 1, random, u, v);
+        }
+    }
+};
+
+TEST_F(GBufferTest, equals_the_twin_on_random_triangles) {
+    for (const float extent : {2.0f, 20.0f}) {
+        TestScene test;
+        materials(test);
+        test.soup(300, extent, random);
+        test.look({0.1f, 0.2f, 2 * extent}, vec3(0), 1.1f);
+        const auto got = run(test, 67, 41);
+        EXPECT_LE(differing(test, got, 67, 41, 2 * extent), 67u * 41 / 200);
+    }
+}
+
+TEST_F(GBufferTest, every_size_of_image) {
+    TestScene test;
+    materials(test);
+    test.soup(60, 3, random);
+    test.look({0, 0, 6}, vec3(0));
+    for (const auto& [w, h] : {std::pair{1u, 1u}, {63u, 1u}, {64u, 1u}, {65u, 1u}, {1u, 65u}, {9u, 7u}})
+        EXPECT_LE(differing(test, run(test, w, h), w, h, 6), 1u) << w << " x " << h;
+}
+
+TEST_F(GBufferTest, row_0_is_the_top_and_column_0_the_left) {
+    TestScene test;
+    const uint32_t red = test.material({1, 0, 0}), green = test.material({0, 1, 0}), blue = test.material({0, 0, 1});
+    test.quad({-1, 0, 0}, {1, 0, 0}, {0, 1, 0}, red);     // upper left
+    test.quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, green);    // upper right
+    test.quad({-1, -1, 0}, {2, 0, 0}, {0, 1, 0}, blue);   // below
+    test.scene.cameras = {{"", mat4(1), 1.5707963f}};
+    test.scene.cameras[0].to_world[3] = vec4(0, 0, 1, 1);
+    // Scale in a camera's node does not change what it sees.
+    for (float scale : {1.0f, 20.0f}) {
+        for (int axis = 0; axis < 3; ++axis) test.scene.cameras[0].to_world[axis] = scale * mat4(1)[axis];
+        const auto got = run(test, 2, 2);
+        EXPECT_EQ(vec3(got.albedo[0]), vec3(1, 0, 0));
+        EXPECT_EQ(vec3(got.albedo[1]), vec3(0, 1, 0));
+        EXPECT_EQ(vec3(got.albedo[2]), vec3(0, 0, 1));
+        EXPECT_EQ(vec3(got.albedo[3]), vec3(0, 0, 1));
+        EXPECT_NEAR(got.positions[0].x, -0.5, 1e-6);
+        EXPECT_NEAR(got.positions[0].y, 0.5, 1e-6);
+        EXPECT_NEAR(got.positions[0].w, 1, 1e-6);
+    }
+}
+
+TEST_F(GBufferTest, normals_face_the_camera_and_backs_do_not_shine) {
+    TestScene test;
+    const uint32_t single = test.material({0.5f, 0.5f, 0.5f}, {1, 1, 1}), doubled = test.material({0.5f, 0.5f, 0.5f}, {1, 1, 1}, true);
+    test.quad({-2, -1, 0}, {1, 0, 0}, {0, 2, 0}, single);   // front
+    test.quad({-1, -1, 0}, {0, 2, 0}, {1, 0, 0}, single);   // back
+    test.quad({0, -1, 0}, {1, 0, 0}, {0, 2, 0}, doubled);   // front
+    test.quad({1, -1, 0}, {0, 2, 0}, {1, 0, 0}, doubled);   // back
+    test.scene.cameras = {{"", mat4(1), 0.1f}};
+    test.scene.cameras[0].to_world[3] = vec4(0, 0, 10, 1);
+    const auto got = run(test, 4, 1);
+    for (int i = 0; i < 4; ++i) {
+        EXPECT_EQ(unpack_direction(got.normals[i].x), vec3(0, 0, 1)) << i;
+        EXPECT_EQ(unpack_direction(got.normals[i].y), vec3(0, 0, 1)) << i;
+        EXPECT_EQ(vec3(got.albedo[i]), vec3(0.5f)) << i;
+        EXPECT_EQ(vec3(got.emitted[i]), vec3(i == 1 ? 0.0f : 1.0f)) << i;
+    }
+}
+
+TEST_F(GBufferTest, far_away_and_at_any_scale) {
+    for (const auto& [scale, offset] : {std::pair{1e-6f, 0.0f}, {1e6f, 0.0f}, {1.0f, 1e4f}}) {
+        TestScene test;
+        materials(test);
+        test.soup(100, 3, random);
+        for (vec3& p : test.triangles.positions) p = scale * p + vec3(offset);
+        test.look(scale * vec3(0, 0, 8) + vec3(offset), vec3(offset));
+        const auto got = run(test, 40, 30);
+        const double reach = std::abs(offset) + 8 * scale;
+        // Far from the origin the vertices themselves are coarse; only positions and finiteness are asked there.
+        if (offset == 0) { EXPECT_LE(differing(test, got, 40, 30, reach), 40u * 30 / 100) << scale; }
+        for (const auto* values : {&got.positions, &got.albedo, &got.emitted})
+            for (const vec4& v : *values) ASSERT_TRUE(std::isfinite(v.x + v.y + v.z + v.w));
+    }
+}
+
+TEST_F(GBufferTest, hard_scenes_are_finite) {
+    TestScene nothing;
+    nothing.material({1, 1, 1});
+    nothing.look({0, 0, 1}, vec3(0));
+    for (const vec4& p : run(nothing, 8, 8).positions) EXPECT_EQ(p, vec4(0));
+
+    TestScene test;  // zero area, needles, a plane edge-on through the eye, zero normals, absurd texture coordinates
+    materials(test);
+    const uint32_t v = test.vertex(vec3(0), vec3(0), vec2(1e30f, -std::numeric_limits<float>::infinity()));
+    const uint32_t a = test.vertex({1, 0, 0}, vec3(0), vec2(std::nanf(""))), b = test.vertex({0, 1, 1e-20f}, vec3(0));
+    for (uint32_t m = 0; m < test.scene.materials.size(); ++m) {
+        test.triangles.triangles.emplace_back(v, v, v, m);
+        test.triangles.triangles.emplace_back(v, a, a, m);
+        test.triangles.triangles.emplace_back(v, a, b, m);
+        test.quad({-3, 0.02f * float(m), -1}, {6, 0, 0}, {0, 0, 6}, m);
+        test.quad({-3, -0.4f, float(m) - 3}, {6, 0, 0}, {0, 1e-6f, 0}, m);
+    }
+    test.look({0, 0, 3}, vec3(0));
+    const auto got = run(test, 33, 33);
+    size_t seen = 0;
+    for (const auto* values : {&got.positions, &got.albedo, &got.emitted})
+        for (const vec4& p : *values) ASSERT_TRUE(std::isfinite(p.x + p.y + p.z + p.w));
+    for (const vec4& p : got.positions) seen += p.w > 0;
+    EXPECT_GT(seen, 0u);
+}
+
+TEST_F(GBufferTest, comparator_sees_a_wrong_pixel) {
+    TestScene test;
+    materials(test);
+    test.quad({-3, -3, 0}, {6, 0, 0}, {0, 6, 0}, 3);
+    test.look({0, 0, 3}, vec3(0));
+    auto got = run(test, 4, 4);
+    ASSERT_EQ(differing(test, got, 4, 4, 3), 0u);
+    got.albedo[5].y += 0.01f;
+    got.normals[6].x = pack_direction({0, 1, 0});
+    EXPECT_EQ(differing(test, got, 4, 4, 3), 2u);
+}
+
+}  // namespace
+}  // namespace myriad::passes

@@ -1,0 +1,40 @@
+// The scene on the device: triangles, materials, textures; see README.md.
+#pragma once
+
+#include "engine/recorder.hpp"
+#include "passes/geometry/geometry_io.h"
+#include "scenes/scene.hpp"
+
+namespace myriad::passes {
+
+// What is uploaded, still on the host: tests look at it, and the product throws it away.
+struct GeometryData {
+    std::vector<VertexAttributes> attributes;
+    std::vector<Material> materials;
+    std::vector<uint> texels;  // empty when no material refers to a texture
+};
+GeometryData geometry_data(const scenes::Scene& scene, const scenes::Triangles& triangles);
+
+class Geometry {
+public:
+    Geometry(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles);
+
+    GeometryRef read(engine::Recorder& recorder) const;
+
+    const engine::Array<vec3>& positions() const { return positions_; }
+    const engine::Array<uvec4>& triangles() const { return triangles_; }
+
+private:
+    Geometry(engine::Device& device, const scenes::Triangles& triangles, const GeometryData& data);
+
+    engine::Array<vec3> positions_;
+    engine::Array<uvec4> triangles_;
+    engine::Array<VertexAttributes> attributes_;
+    engine::Array<Material> materials_;
+    engine::Array<uint> texels_;
+};
+
+// What a byte of an sRGB texture means.
+double srgb_to_linear(uint8_t code);
+
+}  // namespace myriad::passes

@@ -1,0 +1,90 @@
+#include "passes/maps/maps.hpp"
+
+#include <algorithm>
+
+namespace myriad::passes {
+
+using compute::AppendLists;
+
+namespace {
+
+uint32_t round_up(uint32_t value, uint32_t multiple) { return (value + multiple - 1) / multiple * multiple; }
+
+uint64_t atlas_words(uint32_t views, uint32_t map_size) { return uint64_t(views) * map_texels(map_size); }
+
+}  // namespace
+
+ViewMaps::ViewMaps(engine::Device& device, const MapSettings& settings, uint32_t max_views, uint32_t multiple)
+    : device_(device), settings_(settings), batch_(round_up(std::max(max_views, 1u), multiple)), multiple_(multiple), manylods_(device),
+      splat_(device) {
+    splat_.check_map_size(settings.map_size);
+    // An atlas may take half of what is left, and an index into it has 32 bits.
+    while (batch_ > multiple_ && (atlas_words(batch_, settings.map_size) * sizeof(uint) > device_.memory_free() / 2 ||
+                                  atlas_words(batch_, settings.map_size) >> 32))
+        halve();
+    make_atlas();
+    // A guess that suffices for most scenes (measured: 0.3 to 0.6 groups a texel at epsilon 1): a redone frame costs more than memory
+    // that lies idle, but what is wrong with it costs no more than that frame.
+    const double scale = 1.0 / std::clamp(double(settings.epsilon * settings.epsilon), 0.25, 16.0);
+    const uint64_t guess = std::max<uint64_t>(uint64_t(0.7 * scale * double(atlas_words(batch_, settings.map_size))), 4096);
+    const uint64_t affordable = device_.memory_free() / 2 / (4 * sizeof(uvec2));
+    const uint64_t kept = std::min({guess, affordable, AppendLists::max_capacity});
+    make_lists(std::max<uint64_t>(kept / 2, batch_), std::max<uint64_t>(kept, 1));
+}
+
+void ViewMaps::halve() { batch_ = round_up(batch_ / 2, multiple_); }
+
+void ViewMaps::make_atlas() {
+    atlas_ = {};
+    atlas_ = {device_, "atlas", "atlas", atlas_words(batch_, settings_.map_size)};
+}
+
+void ViewMaps::make_lists(uint64_t next, uint64_t kept) {
+    lists_.reset();
+    lists_.emplace(device_, settings_.append, next, kept);
+}
+
+void ViewMaps::record(engine::Recorder& recorder, const compute::Bsh& tree, const engine::Array<View>& views, const engine::Array<uint>& count,
+                      uint32_t first) {
+    {
+        auto scope = recorder.scope("cut");
+        manylods_.record(recorder, *lists_, {tree, views, count, first, batch_, settings_.epsilon, settings_.map_size});
+    }
+    auto scope = recorder.scope("splat");
+    splat_.record(recorder, {*lists_, tree, views, first, settings_.map_size}, atlas_);
+}
+
+bool ViewMaps::accept() {
+    const compute::AppendReport report = lists_->report();
+    counters_.list_peak = std::max({counters_.list_peak, report.next_needed, report.kept_needed});
+    counters_.list_capacity = std::max(lists_->next_capacity(), lists_->kept_capacity());
+    if (report.ok()) {
+        ++counters_.batches;
+        counters_.node_views += report.processed;
+        counters_.cut += report.processed - report.opened;
+        counters_.groups += report.kept;
+        return true;
+    }
+    const uint32_t redone = counters_.redone + 1;
+    counters_ = {};
+    counters_.redone = redone;
+    // A quarter more than was needed: the next frame's need differs, and an overflowed step hides what came after it.
+    auto grown = [](uint64_t needed, uint64_t capacity) { return needed > capacity ? needed + needed / 4 : capacity; };
+    const uint64_t next = grown(report.next_needed, lists_->next_capacity());
+    const uint64_t kept = grown(report.kept_needed, lists_->kept_capacity());
+    const uint64_t old = AppendLists::bytes(device_, settings_.append, lists_->next_capacity(), lists_->kept_capacity());
+    const bool fits = std::max(next, kept) <= AppendLists::max_capacity &&
+                      AppendLists::bytes(device_, settings_.append, next, kept) <= device_.memory_free() + old;
+    if (fits) {
+        make_lists(next, kept);
+    } else if (batch_ > multiple_) {
+        halve();
+        make_atlas();
+    } else {
+        throw OutOfMemory("the lists of " + std::to_string(batch_) + " views need " + std::to_string((next + kept) * 8 >> 20) +
+                          " MiB, which --memory-limit does not leave; raise it, or lower --map-size, or raise --epsilon");
+    }
+    return false;
+}
+
+}  // namespace myriad::passes

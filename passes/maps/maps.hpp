@@ -1,0 +1,61 @@
+// The maps of many views, in as many batches as memory asks for; see README.md.
+#pragma once
+
+#include <optional>
+
+#include "compute/manylods/manylods.hpp"
+#include "passes/splat/splat.hpp"
+
+namespace myriad::passes {
+
+struct MapSettings {
+    compute::AppendMode append = compute::AppendMode::scan;
+    uint32_t map_size = 32;   // texels a side of a half map
+    float epsilon = 1;        // texels
+};
+
+struct MapCounters {
+    uint64_t node_views = 0;  // tested
+    uint64_t cut = 0;         // node-views in the cuts, culled ones included
+    uint64_t groups = 0;      // that hold them
+    uint64_t list_peak = 0, list_capacity = 0;  // items of the longest list, and what there was room for
+    uint32_t batches = 0, redone = 0;
+};
+
+class ViewMaps {
+public:
+    // `multiple`: batches start at multiples of this. Throws InputError for a map size that the device cannot draw, OutOfMemory
+    // when not even one batch of `multiple` views fits.
+    ViewMaps(engine::Device& device, const MapSettings& settings, uint32_t max_views, uint32_t multiple);
+
+    // How many views go at once; can get smaller when accept() returns false.
+    uint32_t batch() const { return batch_; }
+
+    // Cuts and draws views [first, first + batch()) of those that exist.
+    void record(engine::Recorder& recorder, const compute::Bsh& tree, const engine::Array<View>& views, const engine::Array<uint>& count,
+                uint32_t first);
+
+    // After the submission: whether the lists sufficed. If not they are longer now, or the batch is smaller, and all batches must be
+    // done again. Throws OutOfMemory when there is no way left.
+    bool accept();
+
+    const engine::Array<uint>& atlas() const { return atlas_; }
+    const compute::AppendLists& lists() const { return *lists_; }
+    MapCounters take_counters() { return std::exchange(counters_, {}); }
+
+private:
+    void make_lists(uint64_t next, uint64_t kept);
+    void make_atlas();
+    void halve();
+
+    engine::Device& device_;
+    MapSettings settings_;
+    uint32_t batch_, multiple_;
+    compute::ManyLods manylods_;
+    SplatPass splat_;
+    std::optional<compute::AppendLists> lists_;
+    engine::Array<uint> atlas_;
+    MapCounters counters_;
+};
+
+}  // namespace myriad::passes

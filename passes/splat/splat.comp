@@ -1,0 +1,39 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// One invocation a group (or, on devices that limit loops, a slot of a group: specialisation constant 2).
+#include "engine/kernel.glsl"
+#include "passes/splat/splat_io.h"
+layout(constant_id = 2) const uint threads_per_group = 1u;
+layout(push_constant, scalar) uniform Push { SplatPush push; };
+
+void draw(View view, Sphere sphere, uint cone, uint map) {
+    const Splat s = splat_of(view, sphere, cone, push.grow, push.flat_cos);
+    const uint size = push.map_size;
+    for (uint half_index = 0u; half_index < 2u; ++half_index) {
+        const Footprint f = footprint(half_index, s.d, s.radius);
+        if (!f.exists) continue;
+        const uint x0 = splat_first(f.center.x - f.radius, size), x1 = splat_end(f.center.x + f.radius, size);
+        const uint y0 = splat_first(f.center.y - f.radius, size), y1 = splat_end(f.center.y + f.radius, size);
+        for (uint y = y0; y < y1; ++y)
+            for (uint x = x0; x < x1; ++x) {
+                const float depth = splat_depth(s, unproject(half_index, texel_middle(x, y, size)));
+                if (depth > 0.0f) atomicMin(push.atlas.at[map + texel_index(half_index, x, y, size)], floatBitsToUint(depth));
+            }
+    }
+}
+
+void main() {
+    const uint index = thread_index() / threads_per_group;
+    if (index >= min(push.count.at[0], push.capacity)) return;
+    const CutGroup g = cut_unpack(push.groups.at[index]);
+    uint drawn = g.drawn;
+    if (threads_per_group != 1u) drawn &= 1u << (thread_index() % threads_per_group);
+    if (drawn == 0u) return;
+    const View view = push.views.at[g.view];
+    const vec4 frame = push.tree.frames.at[g.block];
+    const uint map = (g.view - push.first_view) * map_texels(push.map_size);
+    for (; drawn != 0u; drawn &= drawn - 1u) {
+        const uint slot = 8u * g.block + findLSB(drawn);
+        draw(view, bsh_decode(frame, push.tree.spheres.at[slot]), push.tree.cones.at[slot], map);
+    }
+}

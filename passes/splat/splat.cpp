@@ -1,0 +1,34 @@
+#include "passes/splat/splat.hpp"
+
+#include "passes/kernels.hpp"
+
+namespace myriad::passes {
+
+// A leaf around the view may scan its whole map. Where an invocation's loops are limited it draws one node, not eight.
+SplatPass::SplatPass(engine::Device& device)
+    : device_(device), threads_per_group_(device.loop_limit() == ~0u ? 1 : 8),
+      splat_(device, engine::passes_kernels, "splat/splat", {{2, threads_per_group_}}), grid_(device) {}
+
+void SplatPass::check_map_size(uint32_t map_size) const {
+    if (map_size < 2 || map_size > 1024 || map_texels(map_size) > device_.loop_limit() - 1024)
+        throw InputError("--map-size " + std::to_string(map_size) + " is out of range: this device draws maps from 2 to " +
+                         (device_.loop_limit() == ~0u ? "1024" : "176") + " texels a side");
+}
+
+void SplatPass::record(engine::Recorder& recorder, const SplatInputs& in, const engine::Array<uint>& atlas) {
+    check_map_size(in.map_size);
+    recorder.fill(atlas, atlas_nothing);
+    if (in.tree.empty()) return;
+    grid_.dispatch(recorder, splat_, in.cut.state(), compute::AppendLists::kept_word, in.cut.kept_capacity(), threads_per_group_, [&] {
+        return SplatPush{.groups = recorder.read(in.cut.kept()),
+                         .count = recorder.read(in.cut.state(), compute::AppendLists::kept_word),
+                         .tree = in.tree.read(recorder),
+                         .views = recorder.read(in.views),
+                         .atlas = recorder.write(atlas),
+                         .capacity = uint(in.cut.kept_capacity()),
+                         .map_size = in.map_size,
+                         .first_view = in.first_view, .grow=getenv("GROW")?(float)atof(getenv("GROW")):1, .flat_cos=getenv("FC")?(float)atof(getenv("FC")):0.866f};
+    });
+}
+
+}  // namespace myriad::passes

@@ -1,0 +1,35 @@
+// Draws the cut into the atlas; see README.md.
+#pragma once
+
+#include "compute/append/append.hpp"
+#include "compute/append/grid.hpp"
+#include "compute/bsh/bsh.hpp"
+#include "passes/splat/splat_io.h"
+
+namespace myriad::passes {
+
+struct SplatInputs {
+    const compute::AppendLists& cut;     // its kept list
+    const compute::Bsh& tree;
+    const engine::Array<View>& views;
+    uint32_t first_view = 0, map_size = 0;
+};
+
+class SplatPass {
+public:
+    explicit SplatPass(engine::Device& device);
+
+    // Throws InputError when maps of this size cannot be drawn on the device (a driver that limits loops).
+    void check_map_size(uint32_t map_size) const;
+
+    // Clears `atlas` (map_texels(map_size) words a view, view `first_view` first) and draws the cut into it.
+    void record(engine::Recorder& recorder, const SplatInputs& in, const engine::Array<uint>& atlas);
+
+private:
+    engine::Device& device_;
+    uint32_t threads_per_group_;
+    engine::Program splat_;
+    compute::Grid grid_;
+};
+
+}  // namespace myriad::passes

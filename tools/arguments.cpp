@@ -1,0 +1,86 @@
+#include "tools/arguments.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace myriad::tools {
+namespace {
+
+[[noreturn]] void refuse(const std::string& option, const std::string& text, const std::string& cure) {
+    throw InputError(option + " '" + text + "': " + cure);
+}
+
+// All of `text` as a T, or false; no sign but '-', no blanks, no hexadecimals.
+template <class T>
+bool read(const std::string& text, T& value) {
+    const char *begin = text.data(), *end = begin + text.size();
+    const auto [stop, error] = std::from_chars(begin, end, value);
+    return error == std::errc() && stop == end;
+}
+
+std::string show(double value) {
+    char text[32];
+    const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::general, 6).ptr;
+    return {text, end};
+}
+
+}  // namespace
+
+uint64_t parse_whole(const std::string& option, const std::string& text, uint64_t least, uint64_t most) {
+    uint64_t value = 0;
+    if (read(text, value) && value >= least && value <= most) return value;
+    refuse(option, text, "give a whole number from " + std::to_string(least) + " to " + std::to_string(most));
+}
+
+double parse_number(const std::string& option, const std::string& text, double least, double most) {
+    double value = 0;
+    if (read(text, value) && value >= least && value <= most) return value;  // NaN is not
+    refuse(option, text, "give a number from " + show(least) + " to " + show(most));
+}
+
+std::pair<uint32_t, uint32_t> parse_size(const std::string& option, const std::string& text) {
+    const size_t cross = text.find('x');
+    uint32_t width = 0, height = 0;
+    if (cross != std::string::npos && read(text.substr(0, cross), width) && read(text.substr(cross + 1), height) && width >= 1 &&
+        height >= 1 && width <= max_side && height <= max_side)
+        return {width, height};
+    refuse(option, text, "give WIDTHxHEIGHT in pixels, each from 1 to " + std::to_string(max_side) + ", such as 640x360");
+}
+
+uint32_t parse_gather(const std::string& option, const std::string& text) {
+    constexpr std::string_view prefix = "subset:";
+    uint32_t subset = 0;
+    if (text == "all") return 0;
+    if (text.starts_with(prefix) && read(text.substr(prefix.size()), subset) && subset >= 1) return subset;
+    refuse(option, text, "give all, or subset:K with a whole number K from 1 on, such as subset:256");
+}
+
+std::string show_gather(uint32_t subset) { return subset ? "subset:" + std::to_string(subset) : "all"; }
+
+std::vector<std::string> parse_list(const std::string& option, const std::string& text, const std::vector<std::string>& known) {
+    if (text == "all") return known;
+    std::vector<std::string> wanted, ordered;
+    for (size_t at = 0; at <= text.size();) {
+        const size_t comma = std::min(text.find(',', at), text.size());
+        wanted.push_back(text.substr(at, comma - at));
+        at = comma + 1;
+        if (std::ranges::find(known, wanted.back()) == known.end())
+            refuse(option, text, "there is no '" + wanted.back() + "'; give all, or some of " + CLI::detail::join(known, ","));
+    }
+    std::ranges::copy_if(known, std::back_inserter(ordered),
+                         [&](const std::string& name) { return std::ranges::find(wanted, name) != wanted.end(); });
+    if (ordered.size() != wanted.size()) refuse(option, text, "a name comes twice; give each once");
+    return ordered;
+}
+
+void refuse_choice(const std::string& option, const std::string& text, const std::vector<std::string>& choices) {
+    refuse(option, text, "give one of " + CLI::detail::join(choices, ", "));
+}
+
+std::string show_number(float value) {
+    char text[32];
+    return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
+}  // namespace myriad::tools

@@ -1,0 +1,98 @@
+#include "tools/bench/bench.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+
+#include <CLI/CLI.hpp>
+
+#include "tools/commands.hpp"
+#include "tools/output_file.hpp"
+
+namespace myriad::tools {
+
+double Samples::median() const {
+    if (ms.empty()) return 0;
+    std::vector<double> sorted = ms;
+    std::sort(sorted.begin(), sorted.end());
+    const size_t middle = sorted.size() / 2;
+    return sorted.size() % 2 ? sorted[middle] : 0.5 * (sorted[middle - 1] + sorted[middle]);
+}
+
+nlohmann::json Samples::json() const {
+    const auto [lo, hi] = std::minmax_element(ms.begin(), ms.end());
+    return {{"median", median()}, {"min", *lo}, {"max", *hi}, {"n", ms.size()}};
+}
+
+nlohmann::json BenchRow::json(const engine::DeviceInfo& device) const {
+    nlohmann::json stage_medians = nlohmann::json::object();
+    for (const auto& [name, samples] : stages) stage_medians[name] = samples.median();
+    return {{"bench", bench},       {"scene", scene},       {"technique", technique}, {"views", views},
+            {"settings", settings}, {"ms", ms.json()},      {"stages", stage_medians}, {"counters", counters},
+            {"bytes", bytes},       {"error", error},       {"extrapolated", extrapolated},
+            {"device", {{"name", device.name}, {"driver", device.driver_version}}}};
+}
+
+const std::vector<Bench>& benches() {
+    static const std::vector<Bench> all = {
+        {"manylods", "cut and splat of many VPL views: the device's lists and walks against native ones", bench_manylods},
+    };
+    return all;
+}
+
+namespace {
+
+struct Arguments {
+    std::string name, json, device;
+    uint64_t memory_mib = 0;
+    BenchOptions options;
+};
+
+void print_row(const BenchRow& row) {
+    std::printf("%-20s %7llu views  %9.1f ms [%.1f … %.1f]", row.technique.c_str(), static_cast<unsigned long long>(row.views),
+                row.ms.median(), *std::min_element(row.ms.ms.begin(), row.ms.ms.end()), *std::max_element(row.ms.ms.begin(), row.ms.ms.end()));
+    for (const auto& [name, samples] : row.stages) std::printf("  %s %.1f", name.c_str(), samples.median());
+    for (const auto& [name, value] : row.counters) std::printf("  %s %.6g", name.c_str(), value);
+    std::printf("\n");
+    std::fflush(stdout);
+}
+
+void run(const Arguments& arguments) {
+    if (arguments.name == "list") {
+        for (const Bench& bench : benches()) std::printf("%-12s %s\n", bench.name, bench.what);
+        return;
+    }
+    const auto bench = std::find_if(benches().begin(), benches().end(), [&](auto& b) { return arguments.name == b.name; });
+    if (bench == benches().end()) throw InputError("no experiment is called \"" + arguments.name + "\"; see myriad bench list");
+    if (!arguments.json.empty()) require_writable(arguments.json);
+    engine::Device device({.select = arguments.device, .validation = false, .memory_limit = arguments.memory_mib << 20});
+    std::printf("device: %s, %s\n", device.info().name.c_str(), device.info().driver_version.c_str());
+    std::string lines;
+    bench->run(device, arguments.options, [&](const BenchRow& row) {
+        print_row(row);
+        lines += row.json(device.info()).dump() + "\n";
+    });
+    if (!arguments.json.empty()) write_text(arguments.json, lines);
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app) {
+    auto arguments = std::make_shared<Arguments>();
+    CLI::App* bench = app.add_subcommand("bench", "timed experiments; `myriad bench list` names them");
+    BenchOptions& o = arguments->options;
+    bench->add_option("NAME", arguments->name, "an experiment, or `list`")->required();
+    bench->add_option("--json", arguments->json, "write the rows as JSON Lines");
+    bench->add_option("--scene", o.scene, "another scene than the experiment's own");
+    bench->add_option("--views", o.views, "numbers of views, separated by commas")->delimiter(',')->check(CLI::Range(1u, 1u << 20));
+    bench->add_option("--samples", o.log2_samples, "log2 of the number of surface samples (20)")->check(CLI::Range(0u, 26u));
+    bench->add_option("--map-size", o.map_size, "texels a side of a half map (32)")->check(CLI::Range(2u, 1024u));
+    bench->add_option("--epsilon", o.epsilon, "criterion, texels (1)")->check(CLI::Range(0.01f, 1000.0f));
+    bench->add_option("--repeat", o.repeats, "measured runs of each row, after a warm-up (5)")->check(CLI::Range(1u, 1000u));
+    bench->add_option("--memory-limit", arguments->memory_mib, "MiB of device memory (all)")->check(CLI::Range(1u, 1u << 24));
+    bench->add_option("--seed", o.seed, "seed (1)");
+    bench->add_option("--device", arguments->device, "part of a device's name, or its index");
+    bench->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace myriad::tools

@@ -1,0 +1,63 @@
+// Timed experiments: each writes measured rows, one JSON object a line (spec, section 5).
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/device.hpp"
+
+namespace myriad::tools {
+
+// Milliseconds of repeated runs.
+struct Samples {
+    std::vector<double> ms;
+    double median() const;
+    nlohmann::json json() const;  // {"median", "min", "max", "n"}
+};
+
+// One measured row. What is absent was not run.
+struct BenchRow {
+    std::string bench, scene, technique;
+    uint64_t views = 0;
+    nlohmann::json settings = nlohmann::json::object();
+    Samples ms;
+    std::map<std::string, Samples> stages;
+    std::map<std::string, double> counters;
+    std::map<std::string, uint64_t> bytes;
+    std::map<std::string, double> error;
+    bool extrapolated = false;
+
+    nlohmann::json json(const engine::DeviceInfo& device) const;
+};
+
+struct BenchOptions {
+    std::string scene;              // empty: the experiment's own
+    std::string camera;
+    std::vector<uint32_t> views;    // empty: the experiment's own
+    uint32_t log2_samples = 20;
+    uint32_t map_size = 32;
+    float epsilon = 1;
+    uint32_t repeats = 5;
+    uint64_t memory_limit = 0;
+    uint32_t seed = 1;
+};
+
+// Called with each row as soon as it is measured.
+using RowSink = std::function<void(const BenchRow&)>;
+
+struct Bench {
+    const char* name;
+    const char* what;
+    void (*run)(engine::Device& device, const BenchOptions& options, const RowSink& sink);
+};
+const std::vector<Bench>& benches();
+
+// bench/manylods.cpp
+void bench_manylods(engine::Device& device, const BenchOptions& options, const RowSink& sink);
+
+}  // namespace myriad::tools

@@ -1,0 +1,160 @@
+#include "tools/bench/native_cut.hpp"
+
+#include <algorithm>
+#include <thread>
+
+#include "compute/manylods/manylods_io.h"
+
+namespace myriad::tools {
+namespace {
+
+// What compute/manylods/manylods_io.h's classify_child says of each of a block's children: drawn | culled << 8 | open << 16.
+// Loops over eight, without branches, so that they vectorise; the arithmetic is that of the shared header.
+inline uint open_block(const NativeTree& tree, uint block, const View& view, float epsilon, float map_size) {
+    const vec4 frame = tree.frames[block];
+    const uvec2* codes = &tree.spheres[size_t(block) * 8];
+    float x[8], y[8], z[8], r[8];
+    uint present[8];
+    for (int i = 0; i < 8; ++i) {
+        x[i] = frame.x + frame.w * float(int(codes[i].x & 0xffffu)) - view.position.x;
+        y[i] = frame.y + frame.w * float(int(codes[i].x >> 16)) - view.position.y;
+        z[i] = frame.z + frame.w * float(int(codes[i].y & 0xffffu)) - view.position.z;
+        r[i] = uintBitsToFloat((codes[i].y >> 16) << 15);
+        present[i] = (codes[i].y >> 16) == bsh_absent ? 0u : ~0u;
+    }
+    const vec3 n = view.direction;
+    const bool cone = view.cos_phi != 0;
+    uint outside[8], small[8];
+    for (int i = 0; i < 8; ++i) {
+        const float l2 = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
+        const float a = n.x * x[i] + n.y * y[i] + n.z * z[i];
+        const float b = cone ? std::sqrt(std::max(l2 - a * a, 0.0f)) : 0.0f;
+        const bool behind_apex = view.cos_phi > 0 && a * view.cos_phi + b * view.sin_phi < 0;
+        const bool side = b * view.cos_phi - a * view.sin_phi > r[i];
+        const bool apex = l2 > r[i] * r[i];
+        outside[i] = (behind_apex ? apex : side) ? ~0u : 0u;
+        const float tangent2 = l2 - r[i] * r[i];
+        const float c = map_size * r[i] / (std::fabs(x[i]) + std::sqrt(std::max(tangent2, 0.0f)));
+        small[i] = tangent2 > 0 && c < epsilon ? ~0u : 0u;
+    }
+    const uint leaf = bsh_is_leaf(8 * block, tree.leaves) ? ~0u : 0u;
+    uint found = 0;
+    for (int i = 0; i < 8; ++i) {
+        const uint culled = present[i] & outside[i];
+        const uint drawn = present[i] & ~outside[i] & (small[i] | leaf);
+        const uint open = present[i] & ~outside[i] & ~(small[i] | leaf);
+        found |= ((drawn & 0x1u) | (culled & 0x100u) | (open & 0x10000u)) << i;
+    }
+    return found;
+}
+
+uint children(const NativeTree& tree, uint block) {
+    uint n = 0;
+    for (uint i = 0; i < 8; ++i) n += !bsh_is_absent(tree.spheres[size_t(block) * 8 + i]);
+    return n;
+}
+
+// Runs work(thread, begin, end) over [0, n) cut in even parts.
+template <class Work>
+void parallel(unsigned threads, size_t n, Work work) {
+    std::vector<std::thread> pool;
+    for (unsigned t = 1; t < threads; ++t) pool.emplace_back([=] { work(t, n * t / threads, n * (t + 1) / threads); });
+    work(0, 0, n / threads);
+    for (std::thread& t : pool) t.join();
+}
+
+// What one thread appends to. Raw growth by doubling; never shrinks, so that a level costs no allocation after the first frame.
+struct Lists {
+    std::vector<uvec2> next, kept;
+    uint64_t node_views = 0;
+};
+
+inline void keep(Lists& out, uint block, uint view, uint found) {
+    if (found & 0xffffu) out.kept.push_back(cut_pack(block, view, found & 0xffffu));
+}
+
+uint root_of(const NativeTree& tree, const View& view, float epsilon, uint map_size) {
+    return classify_child(view, tree.frames[tree.blocks], tree.spheres[size_t(tree.blocks) * 8], bsh_is_leaf(8 * tree.blocks, tree.leaves),
+                          epsilon, map_size);
+}
+
+NativeCut gather_lists(std::vector<Lists>& lists) {
+    NativeCut cut;
+    for (Lists& l : lists) {
+        cut.node_views += l.node_views;
+        cut.peak_bytes += l.kept.capacity() * sizeof(uvec2) + l.next.capacity() * sizeof(uvec2);
+        cut.groups.insert(cut.groups.end(), l.kept.begin(), l.kept.end());
+    }
+    return cut;
+}
+
+}  // namespace
+
+bool native_available() { return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"); }
+
+NativeCut native_lists(const NativeTree& tree, const std::vector<View>& views, float epsilon, uint map_size, unsigned threads) {
+    std::vector<Lists> lists(threads);
+    std::vector<std::vector<uvec2>> active(threads);
+    parallel(threads, views.size(), [&](unsigned t, size_t begin, size_t end) {
+        for (size_t v = begin; v < end; ++v) {
+            const uint root = root_of(tree, views[v], epsilon, map_size);
+            keep(lists[t], tree.blocks, uint(v), root);
+            if (root >> 16) lists[t].next.push_back({tree.blocks - 1, uint(v)});
+        }
+        lists[t].node_views += end - begin;
+    });
+    const uint root_children = children(tree, tree.blocks - 1);
+    for (uint level = 0;; ++level) {
+        // Each thread goes on with its own list: views are dealt out evenly, and nothing has to be copied together.
+        size_t left = 0;
+        for (unsigned t = 0; t < threads; ++t) {
+            active[t].swap(lists[t].next);
+            lists[t].next.clear();
+            left += active[t].size();
+        }
+        if (left == 0) break;
+        parallel(threads, threads, [&](unsigned, size_t begin, size_t end) {
+            for (size_t t = begin; t < end; ++t) {
+                Lists& out = lists[t];
+                for (const uvec2& pair : active[t]) {
+                    const uint found = open_block(tree, pair.x, views[pair.y], epsilon, float(map_size));
+                    keep(out, pair.x, pair.y, found);
+                    for (uint open = found >> 16; open; open &= open - 1)
+                        out.next.push_back({8 * pair.x + uint(__builtin_ctz(open)) - tree.leaves, pair.y});
+                }
+                out.node_views += active[t].size() * (level == 0 ? root_children : 8);
+            }
+        });
+    }
+    NativeCut cut = gather_lists(lists);
+    for (auto& a : active) cut.peak_bytes += a.capacity() * sizeof(uvec2);
+    return cut;
+}
+
+NativeCut native_depth_first(const NativeTree& tree, const std::vector<View>& views, float epsilon, uint map_size, unsigned threads) {
+    std::vector<Lists> lists(threads);
+    const uint root_children = children(tree, tree.blocks - 1);
+    parallel(threads, views.size(), [&](unsigned t, size_t begin, size_t end) {
+        Lists& out = lists[t];
+        std::vector<uint> stack;
+        for (size_t v = begin; v < end; ++v) {
+            const View view = views[v];
+            const uint root = root_of(tree, view, epsilon, map_size);
+            ++out.node_views;
+            keep(out, tree.blocks, uint(v), root);
+            if (!(root >> 16)) continue;
+            stack.assign(1, tree.blocks - 1);
+            while (!stack.empty()) {
+                const uint block = stack.back();
+                stack.pop_back();
+                const uint found = open_block(tree, block, view, epsilon, float(map_size));
+                out.node_views += block == tree.blocks - 1 ? root_children : 8;
+                keep(out, block, uint(v), found);
+                for (uint open = found >> 16; open; open &= open - 1) stack.push_back(8 * block + uint(__builtin_ctz(open)) - tree.leaves);
+            }
+        }
+    });
+    return gather_lists(lists);
+}
+
+}  // namespace myriad::tools

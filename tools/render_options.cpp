@@ -1,0 +1,124 @@
+#include "tools/render_options.hpp"
+
+#include <filesystem>
+#include <set>
+
+#include "scenes/scene.hpp"
+#include "tools/output_file.hpp"
+
+namespace myriad::tools {
+namespace {
+
+void set_output(RenderOptions& options, const std::string& path) {
+    if (path.ends_with(".exr")) return void(options.exr = path);
+    if (!path.ends_with(".png")) throw InputError("-o '" + path + "': unknown format; name an .exr or a .png file");
+    if (!options.png.empty()) throw InputError("-o '" + path + "': --png names a picture already; give an .exr file here");
+    options.png = path;
+}
+
+void set_picture(RenderOptions& options, const std::string& path) {
+    if (!path.ends_with(".png")) throw InputError("--png '" + path + "': name a .png file");
+    if (!options.png.empty()) throw InputError("--png '" + path + "': -o names a picture already; give one of them");
+    options.png = path;
+}
+
+void add_outputs(CLI::App& command, RenderOptions& o) {
+    command.add_option_function<std::string>(
+        "-o,--output", [&o](const std::string& path) { set_output(o, path); },
+        "image: .exr, linear radiance, or .png as for --png; this or --png is needed")->type_name("FILE");
+    command.add_option_function<std::string>(
+        "--png", [&o](const std::string& path) { set_picture(o, path); },
+        "picture to look at: exposed, tone-mapped, 8-bit sRGB")->type_name("FILE");
+    add_parsed(command, "--exposure", "E|auto", "auto", "factor on radiance before the tone curve of the picture; auto: brings the\n"
+               "geometric mean of the luminance of all pixels that are not black to middle grey", [&o](const std::string& text) {
+        o.exposure.reset();
+        if (text != "auto") o.exposure = parse_number("--exposure", text, 1e-30, 1e30);
+    });
+    add_parsed(command, "--aov", "LIST", "", "further layers of the EXR: all, or some of " + CLI::detail::join(layer_names(), ",") + ";\n"
+               "N: shading normal, P: position (m), Z: depth along the camera's axis (m), all 0 where nothing is seen", [&o](const std::string& text) {
+        o.layers = parse_list("--aov", text, layer_names());
+    });
+    command.add_flag("--float", o.full_floats, "colours of the EXR as 32-bit floats instead of halves (P and Z always are)");
+    command.add_option("--stats", o.stats, "write sizes, settings, times and counters as JSON")->type_name("FILE");
+    command.add_option("--trace", o.trace, "write a time line of CPU and GPU, to open in ui.perfetto.dev")->type_name("FILE");
+    command.add_flag("-q,--quiet", o.quiet, "no table and no progress");
+}
+
+void add_technique(CLI::App& command, passes::FrameSettings& s) {
+    add_choice(command, "--visibility", s.visibility, visibilities(),
+               "whether a VPL sees a pixel: by its map, drawn from its cut through the scene;\nby exact rays, the reference; or taken for granted");
+    add_whole(command, "--vpls", s.vpls, 0, 1u << 24, "virtual point lights at most; 0: no indirect light");
+    add_whole(command, "--bounces", s.bounces, 0, 64, "diffuse reflections of light before what the camera sees");
+    add_parsed(command, "--gather", "all|subset:K", show_gather(s.subset), "VPLs that each pixel gathers: all, or about K, a different subset\n"
+               "for each pixel of a block", [&s](const std::string& text) { s.subset = parse_gather("--gather", text); });
+    add_choice(command, "--filter", s.filter, {{"on", true}, {"off", false}}, "average the subsets of blocks of pixels, across no edge");
+    add_number(command, "--vpl-bound", s.vpl_bound, 1e-30f, 1e30f, "bound of the geometry term, 1/m^2; unless given pi * VPLs / area");
+    add_whole(command, "--map-size", s.maps.map_size, 2, 1024, "texels a side of each half of a map");
+    add_number(command, "--epsilon", s.maps.epsilon, 1e-3f, 1e6f, "largest diameter of a node in the cut, in texels of its map");
+    add_number(command, "--bias", s.bias, 0, 1e6f, "receiver bias of maps, in half diagonals of a texel");
+    add_whole(command, "--samples", s.log2_samples, 0, 28, "2^N points on the surface, the leaves of the tree that is cut");
+    add_choice(command, "--append", s.maps.append, append_modes(), "how lists are appended to; images are the same");
+    add_whole(command, "--seed", s.seed, 0, ~0u, "of the VPLs and the points; the scene does not depend on it");
+}
+
+const char* const footer =
+    "Lengths are in metres. glTF's photometric units are taken as radiometric 1:1: point and spot intensity in W/sr,\n"
+    "directional irradiance in W/m^2; emission is radiance. Light that comes straight from emitting surfaces counts as\n"
+    "indirect in the layers, for it is gathered from VPLs on them. Results are the same for the same seed and device.\n"
+    "Exit status: 0 done; 2 bad usage or bad input; 3 no usable device, or out of memory.\n"
+    "\nBuilt-in scenes:";
+
+}  // namespace
+
+const Choices<passes::Visibility>& visibilities() {
+    using passes::Visibility;
+    static const Choices<Visibility> choices = {{"manylods", Visibility::manylods}, {"rays", Visibility::rays}, {"none", Visibility::none}};
+    return choices;
+}
+
+const Choices<compute::AppendMode>& append_modes() {
+    using compute::AppendMode;
+    static const Choices<AppendMode> choices = {{"scan", AppendMode::scan}, {"atomic", AppendMode::atomic}};
+    return choices;
+}
+
+const std::vector<std::string>& layer_names() {
+    static const std::vector<std::string> names = {"direct", "indirect", "emission", "albedo", "N", "P", "Z"};
+    return names;
+}
+
+std::shared_ptr<RenderOptions> add_render_options(CLI::App& command) {
+    auto shared = std::make_shared<RenderOptions>();
+    RenderOptions& o = *shared;
+    command.add_option("SCENE", o.scene, "a .gltf or .glb file, or builtin:NAME[?key=value&...]")->required()->type_name("");
+    add_outputs(command, o);
+    add_parsed(command, "--size", "WxH", std::to_string(o.frame.width) + "x" + std::to_string(o.frame.height), "pixels",
+               [&o](const std::string& text) { std::tie(o.frame.width, o.frame.height) = parse_size("--size", text); });
+    command.add_option("--camera", o.camera, "of the scene; the first unless given, and one that sees all where there is none")
+        ->type_name("NAME|INDEX");
+    add_technique(command, o.frame);
+    add_parsed(command, "--memory-limit", "MiB", "", "for all buffers on the device; unless given, what it has", [&o](const std::string& text) {
+        o.device.memory_limit = parse_whole("--memory-limit", text, 1, uint64_t(1) << 30) << 20;
+    });
+    command.add_option("--device", o.device.select, "part of a name, or an index, as myriad info lists them")->type_name("NAME|INDEX");
+    add_whole(command, "--repeat", o.repeat, 1, 100000, "frames to render, all the same; times are then medians");
+    std::string text = footer;
+    for (const std::string& line : scenes::builtin_names()) text += "\n  builtin:" + line;
+    command.footer(text);
+    return shared;
+}
+
+void check_outputs(const RenderOptions& o) {
+    if (o.exr.empty() && o.png.empty()) throw InputError("no output is given; name one with -o FILE.exr or --png FILE.png");
+    if (o.exr.empty() && !o.layers.empty()) throw InputError("--aov needs an EXR to put the layers in; name one with -o FILE.exr");
+    if (o.png.empty() && o.exposure) throw InputError("--exposure needs a picture to apply to; name one with --png FILE.png");
+    std::set<std::filesystem::path> seen;
+    for (const std::string* path : {&o.exr, &o.png, &o.stats, &o.trace}) {
+        if (path->empty()) continue;
+        require_writable(*path);
+        if (!seen.insert(std::filesystem::absolute(*path).lexically_normal()).second)
+            throw InputError("'" + *path + "' is asked for twice; give each output its own name");
+    }
+}
+
+}  // namespace myriad::tools

@@ -1,0 +1,171 @@
+#include "tools/stats.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <cstdlib>
+
+#include "tools/arguments.hpp"
+#include "tools/render_options.hpp"
+#include "tools/revision.hpp"
+
+namespace myriad::tools {
+namespace {
+
+using nlohmann::ordered_json;
+
+// A float as people write it: 0.1, not 0.10000000149.
+double shortest(float value) { return std::strtod(show_number(value).c_str(), nullptr); }
+
+double rounded(double ms) { return std::round(ms * 1e4) / 1e4; }  // finer is noise
+
+ordered_json scene_json(const Run& run) {
+    ordered_json scene = {{"name", run.scene}, {"camera", run.camera}, {"triangles", run.size.triangles}, {"lights", run.size.lights},
+                          {"bvh_nodes", run.size.bvh_nodes}};
+    if (run.size.samples) scene["samples"] = run.size.samples, scene["bsh_blocks"] = run.size.bsh_blocks;
+    return scene;
+}
+
+ordered_json counters_json(const FrameRun& frame) {
+    ordered_json counters = ordered_json::object();
+    if (frame.counters.vpls) counters["vpls"] = *frame.counters.vpls;
+    if (const auto& maps = frame.counters.maps) {
+        counters["node_views"] = maps->node_views;
+        counters["cut"] = maps->cut;
+        counters["cut_groups"] = maps->groups;
+        counters["list_capacity"] = maps->list_capacity;
+        counters["list_peak"] = maps->list_peak;
+        counters["batches"] = maps->batches;
+        counters["redone"] = maps->redone;
+    }
+    counters["peak_bytes"] = frame.peak_bytes;
+    return counters;
+}
+
+std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
+std::string format(const char* pattern, ...) {
+    char text[512];
+    va_list arguments;
+    va_start(arguments, pattern);
+    std::vsnprintf(text, sizeof text, pattern, arguments);
+    va_end(arguments);
+    return text;
+}
+
+double mebibytes(uint64_t bytes) { return double(bytes) / (1 << 20); }
+
+std::string counters_text(const FrameRun& frame) {
+    std::string text;
+    if (frame.counters.vpls) text += format("%llu VPLs alive", static_cast<unsigned long long>(*frame.counters.vpls));
+    if (const auto& maps = frame.counters.maps)
+        text += format(", %llu node-views tested, %llu in the cuts, lists %llu of %llu, %u batches, %u redone",
+                       static_cast<unsigned long long>(maps->node_views), static_cast<unsigned long long>(maps->cut),
+                       static_cast<unsigned long long>(maps->list_peak), static_cast<unsigned long long>(maps->list_capacity), maps->batches,
+                       maps->redone);
+    return text.empty() ? text : text + "\n";
+}
+
+}  // namespace
+
+std::vector<PassSum> sum_passes(const std::vector<engine::PassTime>& passes) {
+    std::vector<PassSum> sums;
+    for (const engine::PassTime& pass : passes) {
+        auto sum = std::ranges::find(sums, pass.name, &PassSum::name);
+        if (sum == sums.end()) sum = sums.insert(sum, {pass.name});
+        sum->gpu_ms += pass.gpu_ms;
+        sum->cpu_ms += pass.cpu_ms;
+    }
+    return sums;
+}
+
+double median(std::vector<double> values) {
+    std::ranges::sort(values);
+    const size_t middle = values.size() / 2;
+    return values.size() % 2 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
+}
+
+std::vector<PassSum> median_passes(const std::vector<FrameRun>& frames) {
+    struct All {
+        std::string name;
+        std::vector<double> gpu, cpu;
+    };
+    std::vector<All> all;
+    for (const FrameRun& frame : frames)
+        for (const PassSum& sum : sum_passes(frame.passes)) {
+            auto entry = std::ranges::find(all, sum.name, &All::name);
+            if (entry == all.end()) entry = all.insert(entry, {sum.name, {}, {}});
+            entry->gpu.push_back(sum.gpu_ms);
+            entry->cpu.push_back(sum.cpu_ms);
+        }
+    std::vector<PassSum> medians;
+    for (const All& entry : all) medians.push_back({entry.name, median(entry.gpu), median(entry.cpu)});
+    return medians;
+}
+
+ordered_json settings_json(const passes::FrameSettings& s, float vpl_bound) {
+    ordered_json json = {{"width", s.width}, {"height", s.height}, {"seed", s.seed}, {"vpls", s.vpls}};
+    if (s.vpls == 0) return json;
+    json["bounces"] = s.bounces;
+    json["visibility"] = choice_name(visibilities(), s.visibility);
+    json["gather"] = show_gather(s.subset);
+    json["filter"] = s.filter;
+    json["vpl_bound"] = shortest(vpl_bound);
+    if (s.visibility != passes::Visibility::manylods) return json;
+    json["append"] = choice_name(append_modes(), s.maps.append);
+    json["map_size"] = s.maps.map_size;
+    json["epsilon"] = shortest(s.maps.epsilon);
+    json["log2_samples"] = s.log2_samples;
+    json["bias"] = shortest(s.bias);
+    return json;
+}
+
+std::string stats_json(const Run& run) {
+    ordered_json json = {{"program", {{"version", version}, {"git_revision", git_revision}}},
+                         {"device", {{"name", run.device.name}, {"driver", run.device.driver + " " + run.device.driver_version}}},
+                         {"scene", scene_json(run)},
+                         {"settings", run.settings}};
+    for (const HostPhase& phase : run.phases) json["host_ms"][phase.name] = rounded(phase.ms);
+    json["frames"] = ordered_json::array();
+    for (const FrameRun& frame : run.frames) {
+        ordered_json passes = ordered_json::array();
+        for (const PassSum& sum : sum_passes(frame.passes))
+            passes.push_back({{"name", sum.name}, {"gpu_ms", rounded(sum.gpu_ms)}, {"cpu_ms", rounded(sum.cpu_ms)}});
+        json["frames"].push_back({{"ms", rounded(frame.host.ms)}, {"passes", passes}, {"counters", counters_json(frame)}});
+    }
+    if (run.exposure) json["exposure"] = *run.exposure;
+    return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string stats_table(const Run& run) {
+    std::string text = format("%s, camera %s, %llu triangles, on %s\n", run.scene.c_str(), run.camera.c_str(),
+                              static_cast<unsigned long long>(run.size.triangles), run.device.name.c_str());
+    const bool many = run.frames.size() > 1;
+    text += format("%-12s %10s %10s%s\n", "pass", "gpu ms", "cpu ms",
+                   many ? format("   (medians of %zu frames)", run.frames.size()).c_str() : "");
+    PassSum total{"total"};
+    const auto row = [&](const PassSum& pass) {
+        text += format("%-12s %10.2f %10.2f\n", pass.name.c_str(), pass.gpu_ms, pass.cpu_ms);
+    };
+    for (const PassSum& pass : median_passes(run.frames)) {
+        row(pass);
+        total.gpu_ms += pass.gpu_ms;
+        total.cpu_ms += pass.cpu_ms;
+    }
+    row(total);
+    std::vector<double> walls;
+    for (const FrameRun& frame : run.frames) walls.push_back(frame.host.ms);
+    if (!walls.empty()) text += format("frame %.0f ms", median(walls));
+    for (const HostPhase& phase : run.phases) text += format(", %s %.0f ms", phase.name.c_str(), phase.ms);
+    text += "\n";
+    if (run.frames.empty()) return text;
+    text += counters_text(run.frames.back());
+    text += "peak MiB:";
+    for (const auto& [kind, bytes] : run.frames.back().peak_bytes) text += format(" %s %.1f", kind.c_str(), mebibytes(bytes));
+    text += "\n";
+    if (run.exposure) text += format("exposure %.6g\n", *run.exposure);
+    for (const std::string& file : run.files) text += "wrote " + file + "\n";
+    return text;
+}
+
+}  // namespace myriad::tools

@@ -1,0 +1,47 @@
+#include "tools/trace.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace myriad::tools {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr int process = 1, cpu_track = 1, gpu_track = 2;
+
+ordered_json named(const char* what, int track, const std::string& name) {
+    return {{"ph", "M"}, {"pid", process}, {"tid", track}, {"name", what}, {"args", {{"name", name}}}};
+}
+
+ordered_json event(int track, const std::string& name, double begin_ms, double ms) {
+    return {{"ph", "X"}, {"pid", process}, {"tid", track}, {"name", name}, {"ts", 1000 * begin_ms}, {"dur", 1000 * ms}};
+}
+
+}  // namespace
+
+double gpu_offset_ms(const Run& run) {
+    double offset = -std::numeric_limits<double>::infinity();
+    for (const FrameRun& frame : run.frames)
+        for (const engine::PassTime& pass : frame.passes)
+            if (pass.gpu_ms > 0) offset = std::max(offset, pass.cpu_begin_ms + pass.cpu_ms - pass.gpu_begin_ms);
+    return offset;
+}
+
+std::string trace_json(const Run& run) {
+    ordered_json events = {named("process_name", cpu_track, "myriad render " + run.scene), named("thread_name", cpu_track, "CPU"),
+                           named("thread_name", gpu_track, "GPU: " + run.device.name)};
+    for (const HostPhase& phase : run.phases) events.push_back(event(cpu_track, phase.name, phase.begin_ms, phase.ms));
+    const double gpu_ms = run.recorder_ms + gpu_offset_ms(run);
+    for (const FrameRun& frame : run.frames) {
+        events.push_back(event(cpu_track, frame.host.name, frame.host.begin_ms, frame.host.ms));
+        for (const engine::PassTime& pass : frame.passes) {
+            events.push_back(event(cpu_track, pass.name, run.recorder_ms + pass.cpu_begin_ms, pass.cpu_ms));
+            if (pass.gpu_ms > 0) events.push_back(event(gpu_track, pass.name, gpu_ms + pass.gpu_begin_ms, pass.gpu_ms));
+        }
+    }
+    const ordered_json json = {{"displayTimeUnit", "ms"}, {"traceEvents", events}};
+    return json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace myriad::tools
