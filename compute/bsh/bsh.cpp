@@ -52,6 +52,8 @@ Bsh::Bsh(engine::Device& device, std::span<const glm::vec3> positions, std::span
     merged_ = {device, "scene", "BSH merged spheres", blocks()};
     spheres_ = {device, "scene", "BSH spheres", slots()};
     cones_ = {device, "scene", "BSH cones", slots()};
+    boxes_ = {device, "scene", "BSH boxes", slots()};
+    merged_boxes_ = {device, "scene", "BSH merged boxes", 2 * uint64_t(blocks())};
 }
 
 void Bsh::refit(engine::Recorder& recorder, const engine::Array<vec3>& positions, const engine::Array<uvec4>& triangles) {
@@ -62,10 +64,13 @@ void Bsh::refit(engine::Recorder& recorder, const engine::Array<vec3>& positions
                                        .spheres = recorder.write(spheres_),
                                        .cones = recorder.write(cones_),
                                        .merged = recorder.write(merged_),
+                                       .boxes = recorder.write(boxes_),
+                                       .merged_boxes = recorder.write(merged_boxes_),
                                        .samples = recorder.read(samples_),
                                        .triangles = recorder.read(triangles),
                                        .positions = recorder.read(positions),
                                        .leaf_radius = sample_radius_,
+                                       .leaf_share = sample_share(),
                                        .nodes = level.nodes,
                                        .first_slot = level.first_slot,
                                        .first_child_block = i == 0 ? 0 : levels_[i - 1].first_block(),
@@ -79,10 +84,14 @@ BshRef Bsh::read(engine::Recorder& recorder) const {
     return {.frames = recorder.read(frames_),
             .spheres = recorder.read(spheres_),
             .cones = recorder.read(cones_),
+            .boxes = recorder.read(boxes_),
             .leaves = leaves(),
             .blocks = blocks()};
 }
 
-uint64_t Bsh::bytes() const { return samples_.bytes() + frames_.bytes() + merged_.bytes() + spheres_.bytes() + cones_.bytes(); }
+uint64_t Bsh::bytes() const {
+    return samples_.bytes() + frames_.bytes() + merged_.bytes() + spheres_.bytes() + cones_.bytes() + boxes_.bytes() +
+           merged_boxes_.bytes();
+}
 
 }  // namespace myriad::compute

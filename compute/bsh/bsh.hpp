@@ -39,11 +39,13 @@ public:
     uint depth() const { return depth_; }                                       // of the binary tree: leaves = 2^depth
     uint levels() const { return empty() ? 0 : uint(levels_.size()) - 1; }      // opening steps from the root to the leaves
     float sample_radius() const { return sample_radius_; }
+    float sample_share() const { return empty() ? 0 : float(area_ / leaves()); }  // m^2
     double area() const { return area_; }
     const engine::Array<SurfaceSample>& samples() const { return samples_; }    // in leaf order
     const engine::Array<vec4>& frames() const { return frames_; }
     const engine::Array<uvec2>& spheres() const { return spheres_; }
     const engine::Array<uint>& cones() const { return cones_; }
+    const engine::Array<uvec2>& boxes() const { return boxes_; }
     uint64_t bytes() const;
     double sampling_ms() const { return sampling_ms_; }  // host time of construction
     double ordering_ms() const { return ordering_ms_; }
@@ -55,8 +57,8 @@ private:
     float sample_radius_ = 0;
     double area_ = 0, sampling_ms_ = 0, ordering_ms_ = 0;
     engine::Array<SurfaceSample> samples_;
-    engine::Array<vec4> frames_, merged_;
-    engine::Array<uvec2> spheres_;
+    engine::Array<vec4> frames_, merged_, merged_boxes_;
+    engine::Array<uvec2> spheres_, boxes_;
     engine::Array<uint> cones_;
 };
 

@@ -35,6 +35,17 @@ bool contains(const Lines& outer, const Lines& inner) {
     return between + inner.angle <= outer.angle + Real(1e-12);
 }
 
+bool contains(const Sphere& s, const BshBox& decoded, const BshBox& exact) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const Real center = s.center[axis];
+        // The code's corners are of single precision: their own error, and that of the sum with the centre.
+        const Real error = (Real(s.radius) + std::abs(center)) * Real(1e-6);
+        if (center + Real(decoded.low[axis]) > Real(exact.low[axis]) + error || center + Real(decoded.high[axis]) < Real(exact.high[axis]) - error)
+            return false;
+    }
+    return true;
+}
+
 struct Walk {
     const BshArrays& tree;
     const BshInput& input;
@@ -58,6 +69,24 @@ struct Walk {
         return contains(cone, {normal / length, 0}) || fail(slot, "the leaf's cone does not contain its normal");
     }
 
+    // Around the patches of the samples below a node.
+    BshBox reach(uint slot) const {
+        if (bsh_is_leaf(slot, tree.leaves)) {
+            const glm::uvec4 t = input.triangles[input.samples[slot].triangle];
+            return bsh_patch_box(input.position(slot), input.positions[t.x], input.positions[t.y], input.positions[t.z], tree.cones[slot],
+                                 input.leaf_radius, input.leaf_share);
+        }
+        BshBox box{vec3(HUGE_VALF), vec3(-HUGE_VALF)};
+        const uint block = bsh_block_of(slot, tree.leaves, tree.blocks);
+        for (uint child = 8 * block; child < 8 * block + 8; ++child) {
+            if (bsh_is_absent(tree.spheres[child])) continue;
+            const BshBox part = reach(child);
+            box.low = glm::min(box.low, part.low);
+            box.high = glm::max(box.high, part.high);
+        }
+        return box;
+    }
+
     bool node(uint slot) {
         if (slot >= tree.spheres.size()) return fail(slot, "outside the arrays");
         if (reached[slot]) return fail(slot, "reached twice");
@@ -65,6 +94,8 @@ struct Walk {
         if (bsh_is_absent(tree.spheres[slot])) return fail(slot, "absent, but a node of the tree");
         const Sphere sphere = tree.sphere(slot);
         if (!std::isfinite(sphere.radius) || !std::isfinite(length_of(RealVec(sphere.center)))) return fail(slot, "the sphere is not finite");
+        if (!contains(sphere, bsh_decode_box(tree.boxes[slot], sphere.radius), reach(slot)))
+            return fail(slot, "the box does not contain the patches below");
         if (bsh_is_leaf(slot, tree.leaves)) return leaf(slot);
         const uint block = bsh_block_of(slot, tree.leaves, tree.blocks);
         if (block >= tree.blocks) return fail(slot, "owns a block outside the tree");
@@ -87,7 +118,7 @@ struct Walk {
 std::string bsh_check(const BshArrays& tree, const BshInput& input) {
     const size_t slots = 8 * (size_t(tree.blocks) + 1);
     if (tree.leaves != input.samples.size()) return "as many leaves as samples expected";
-    if (tree.frames.size() != slots / 8 || tree.spheres.size() != slots || tree.cones.size() != slots)
+    if (tree.frames.size() != slots / 8 || tree.spheres.size() != slots || tree.cones.size() != slots || tree.boxes.size() != slots)
         return "array sizes do not fit the block count";
     Walk walk{tree, input, std::vector<bool>(slots), {}};
     walk.node(tree.root());

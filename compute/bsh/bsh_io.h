@@ -37,6 +37,7 @@ struct BshRef {
     Float4s frames;                  // by block: origin xyz, step
     Uint2s spheres;                  // by slot: x | y << 16, z | radius code << 16
     Uints cones;                     // by slot: see bsh_cone_*
+    Uint2s boxes;                    // by slot: see bsh_box_*
     uint leaves;                     // n
     uint blocks;                     // without the one over the root
 };
@@ -78,6 +79,19 @@ MYRIAD_FN vec3 bsh_cone_axis(uint cone) {
         b = (1.0f - abs(u)) * sign_not_zero(v);
     }
     return vec3(a, b, z) / sqrt(a * a + b * b + z * z);
+}
+// What a node's surface fills of its sphere: the box around its samples' patches, 10 bits a side in units of the radius,
+// rounded outward, relative to the decoded centre. Spheres decide what is drawn; boxes say how far it reaches, because a
+// sphere around a square patch of wall sticks out over its neighbours, and eight levels of that darken every map.
+struct BshBox {
+    vec3 low, high;
+};
+MYRIAD_FN BshBox bsh_decode_box(uvec2 code, float radius) {
+    const float step = radius / 511.0f;
+    BshBox box;
+    box.low = vec3(float(code.x & 1023u), float((code.x >> 10) & 1023u), float(code.x >> 20)) * step - radius;
+    box.high = vec3(float(code.y & 1023u), float((code.y >> 10) & 1023u), float(code.y >> 20)) * step - radius;
+    return box;
 }
 // Cosine and sine of the half-angle.
 MYRIAD_FN vec2 bsh_cone_cos_sin(uint cone) {

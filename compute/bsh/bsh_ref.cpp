@@ -23,23 +23,30 @@ BshArrays bsh_ref(const BshInput& input) {
     tree.frames.resize(tree.blocks + 1);
     tree.spheres.resize(8 * (tree.blocks + 1));
     tree.cones.resize(8 * (tree.blocks + 1));
+    tree.boxes.resize(8 * (tree.blocks + 1));
 
     std::vector<Sphere> nodes(tree.leaves);  // of the level, before they are encoded
+    std::vector<BshBox> reaches(tree.leaves);
     for (uint leaf = 0; leaf < tree.leaves; ++leaf) {
         const glm::uvec4 t = input.triangles[input.samples[leaf].triangle];
         nodes[leaf] = {input.position(leaf), input.leaf_radius};
         tree.cones[leaf] = bsh_cone_of(input.positions[t.y] - input.positions[t.x], input.positions[t.z] - input.positions[t.x]);
+        reaches[leaf] = bsh_patch_box(nodes[leaf].center, input.positions[t.x], input.positions[t.y], input.positions[t.z], tree.cones[leaf],
+                                      input.leaf_radius, input.leaf_share);
     }
     for (const BshLevel& level : levels) {
         std::vector<Sphere> owners;
+        std::vector<BshBox> owner_reaches;
         for (uint block = 0; block < level.blocks(); ++block) {
             const uint slot = level.first_slot + 8 * block;
             BshSpheres spheres;
             BshCones cones;
+            BshBoxes boxes;
             for (uint i = 0; i < 8; ++i) {
                 const uint node = std::min(8 * block + i, level.nodes - 1);
                 spheres.at[i] = nodes[node];
                 cones.at[i] = tree.cones[level.first_slot + node];
+                boxes.at[i] = reaches[node];
             }
             tree.frames[slot / 8] = bsh_frame(spheres);
             for (uint i = 0; i < 8; ++i) {
@@ -47,13 +54,16 @@ BshArrays bsh_ref(const BshInput& input) {
                 spheres.at[i] = bsh_decode(tree.frames[slot / 8], code);
                 const bool present = 8 * block + i < level.nodes;
                 tree.spheres[slot + i] = present ? code : uvec2(0, bsh_absent << 16);
+                tree.boxes[slot + i] = present ? bsh_encode_box(spheres.at[i], boxes.at[i]) : uvec2(0);
                 if (!present) tree.cones[slot + i] = bsh_cone_all;
             }
             if (slot == tree.root()) break;
             owners.push_back(bsh_merge(spheres));
+            owner_reaches.push_back(bsh_merge_boxes(boxes));
             tree.cones[level.first_slot + 8 * level.blocks() + block] = bsh_cone_merge(cones);
         }
         nodes = std::move(owners);
+        reaches = std::move(owner_reaches);
     }
     return tree;
 }
@@ -62,6 +72,7 @@ BshArrays bsh_download(engine::Device& device, const Bsh& bsh) {
     return {.frames = engine::download(device, bsh.frames()),
             .spheres = engine::download(device, bsh.spheres()),
             .cones = engine::download(device, bsh.cones()),
+            .boxes = engine::download(device, bsh.boxes()),
             .leaves = bsh.leaves(),
             .blocks = bsh.blocks()};
 }

@@ -14,6 +14,7 @@ struct BshArrays {
     std::vector<vec4> frames;
     std::vector<uvec2> spheres;
     std::vector<uint> cones;
+    std::vector<uvec2> boxes;
     uint leaves = 0, blocks = 0;
 
     uint root() const { return 8 * blocks; }
@@ -25,7 +26,7 @@ struct BshInput {
     std::span<const SurfaceSample> samples;  // in leaf order
     std::span<const glm::vec3> positions;
     std::span<const glm::uvec4> triangles;
-    float leaf_radius;
+    float leaf_radius, leaf_share;
 
     vec3 position(uint leaf) const;
 };

@@ -94,7 +94,7 @@ protected:
         built.tree = bsh_download(device, built.bsh);
     }
     static BshInput input(const Built& built, const Mesh& mesh) {
-        return {built.samples, mesh.positions, mesh.triangles, built.bsh.sample_radius()};
+        return {built.samples, mesh.positions, mesh.triangles, built.bsh.sample_radius(), built.bsh.sample_share()};
     }
     static void expect_equal(const BshArrays& twin, const BshArrays& tree) {
         EXPECT_TRUE(same(twin.frames, tree.frames));
@@ -182,13 +182,14 @@ TEST_F(BshTest, validator_reports_damage) {
         EXPECT_NE(fault_after([&](BshArrays& t) { t.spheres[slot].y = bsh_absent << 16; }), "") << "a missing node";
         EXPECT_NE(fault_after([&](BshArrays& t) { t.cones[slot] &= 0xffffffu; t.cones[slot] ^= 0x400; }), "") << "a narrow cone";
         EXPECT_NE(fault_after([&](BshArrays& t) { t.frames[slot / 8].x += 1; }), "") << "a moved frame";
+        EXPECT_NE(fault_after([&](BshArrays& t) { t.boxes[slot].y -= 200u << 10; }), "") << "a smaller box";
     }
     EXPECT_NE(fault_after([](BshArrays& t) { t.spheres[t.root() + 1] = t.spheres[t.root()]; }), "") << "a second root";
     EXPECT_NE(fault_after([](BshArrays& t) { t.blocks -= 1; }), "");
     EXPECT_NE(fault_after([](BshArrays& t) { t.leaves /= 2; }), "");
     Built swapped{Bsh(device, {}, {}, 0, 1), {}, built.samples};
     std::swap(swapped.samples.front(), swapped.samples.back());
-    EXPECT_NE(bsh_check(built.tree, {swapped.samples, mesh.positions, mesh.triangles, built.bsh.sample_radius()}), "") << "leaves in another order";
+    EXPECT_NE(bsh_check(built.tree, {swapped.samples, mesh.positions, mesh.triangles, built.bsh.sample_radius(), built.bsh.sample_share()}), "") << "leaves in another order";
 }
 
 TEST(BshFormulaTest, radius_codes_round_up_tightly) {

@@ -8,12 +8,15 @@ void main() {
     if (8u * block >= push.nodes) return;
     BshSpheres spheres;
     BshCones cones;
+    BshBoxes boxes;
     for (uint i = 0u; i < 8u; ++i) {
         const uint node = child_of(block, i);
         const vec4 s = push.merged.at[push.first_child_block + node];
         spheres.at[i].center = vec3(s);
         spheres.at[i].radius = s.w;
         cones.at[i] = push.cones.at[push.first_slot + node];
+        boxes.at[i].low = vec3(push.merged_boxes.at[2u * (push.first_child_block + node)]);
+        boxes.at[i].high = vec3(push.merged_boxes.at[2u * (push.first_child_block + node) + 1u]);
     }
-    write_block(block, spheres, cones);
+    write_block(block, spheres, cones, boxes);
 }

@@ -8,6 +8,7 @@ void main() {
     if (8u * block >= push.nodes) return;
     BshSpheres spheres;
     BshCones cones;
+    BshBoxes boxes;
     for (uint i = 0u; i < 8u; ++i) {
         const uint leaf = child_of(block, i);
         const SurfaceSample s = push.samples.at[leaf];
@@ -19,6 +20,7 @@ void main() {
         spheres.at[i].radius = push.leaf_radius;
         cones.at[i] = bsh_cone_of(b - a, c - a);
         push.cones.at[leaf] = cones.at[i];
+        boxes.at[i] = bsh_patch_box(spheres.at[i].center, a, b, c, cones.at[i], push.leaf_radius, push.leaf_share);
     }
-    write_block(block, spheres, cones);
+    write_block(block, spheres, cones, boxes);
 }

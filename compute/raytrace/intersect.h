@@ -58,9 +58,25 @@ MYRIAD_FN float box_entry(vec3 lo, vec3 hi, vec3 origin, vec3 inverse, float t_m
     return enter <= leave * box_slack ? enter : -1.0f;
 }
 
+// The rounding error of a * b, exactly (Dekker 1971), without the fused multiply-add that lavapipe has not.
+MYRIAD_FN float product_error(float a, float b) {
+    precise const float ta = a * 4097.0f, tb = b * 4097.0f;
+    precise const float ah = ta - (ta - a), bh = tb - (tb - b), al = a - ah, bl = b - bh;
+    precise const float error = ((ah * bh - a * b) + ah * bl + al * bh) + al * bl;
+    return error;
+}
+
+// Twice the signed area of (0, b, a): its sign is exact, for rounding is monotonic and ties are settled by the errors.
+MYRIAD_FN float edge_function(float ax, float ay, float bx, float by) {
+    precise const float area = ax * by - ay * bx;
+    return area;
+}
+MYRIAD_FN float edge_tie(float ax, float ay, float bx, float by) { return product_error(ax, by) - product_error(ay, bx); }
+
 // Watertight (Woop, Benthin, Wald 2013, "Watertight ray/triangle intersection"): vertices are sheared into the plane in
 // which the ray is a point, each in the same way whatever triangle asks, and the edge functions of the two triangles at an
-// edge are exact negatives; `precise` forbids the fused forms that are not. A point on an edge belongs to both.
+// edge are exact negatives; `precise` forbids the fused forms that are not. A point on an edge belongs to both. Signs are
+// exact: without that, a triangle too small for its distance is hit by rays that pass anywhere.
 // The distance is the plane's, as in Embree: the paper's mean of the vertices' depths is off by the triangle's length where
 // a long one is met at a low angle. It is clamped to those depths, which is all that is known of a triangle seen edge-on.
 // `weights` are of p1 and p2; z is positive when the ray meets the side that sees p0, p1, p2 counter-clockwise.
@@ -69,7 +85,12 @@ MYRIAD_FN bool triangle_hit(TraceRay ray, vec3 p0, vec3 p1, vec3 p2, MYRIAD_INOU
     precise const float ax = a.x - ray.shear.x * a.z, ay = a.y - ray.shear.y * a.z;
     precise const float bx = b.x - ray.shear.x * b.z, by = b.y - ray.shear.y * b.z;
     precise const float cx = c.x - ray.shear.x * c.z, cy = c.y - ray.shear.y * c.z;
-    precise const float u = cx * by - cy * bx, v = ax * cy - ay * cx, w = bx * ay - by * ax;
+    float u = edge_function(cx, cy, bx, by), v = edge_function(ax, ay, cx, cy), w = edge_function(bx, by, ax, ay);
+    if (u == 0.0f || v == 0.0f || w == 0.0f) {
+        if (u == 0.0f) u = edge_tie(cx, cy, bx, by);
+        if (v == 0.0f) v = edge_tie(ax, ay, cx, cy);
+        if (w == 0.0f) w = edge_tie(bx, by, ax, ay);
+    }
     precise const float area = u + v + w;
     precise const vec3 normal = cross(p1 - p0, p2 - p0);
     precise const float plane = dot(normal, p0 - ray.origin) / dot(normal, ray.direction);

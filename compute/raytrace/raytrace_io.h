@@ -59,9 +59,9 @@ MYRIAD_FN float ray_reach(vec3 p0, vec3 p1, vec3 p2) {
 
 // Where a ray that leaves the surface at p starts, so that it does not meet the surface itself. `normal` is the unit
 // geometric normal on the side that the ray leaves to, `reach` the ray_reach of p's triangle, or anything larger.
-// The offset is 32 u reach, in units of length, with u = 2^-24: p = w p0 + u p1 + v p2 in floats is off its plane by at most
-// 5 u reach a coordinate, so 9 u along the normal; adding the offset costs 2 u; the next ray's test subtracts its origin
-// from the vertices and shears them, which moves them by another 6 u a coordinate, 10 u along the normal. A grazing ray
+// The offset is 32 u reach, in units of length, with u = 2^-24: p = (1-u-v) p0 + u p1 + v p2 in floats is off its plane by at
+// most 5 u reach a coordinate, so 9 u along the normal; adding the offset costs 2 u; the next ray's distance to the plane is
+// a sum of products of coordinates relative to p (up to 2 reach, rounded) and of a rounded normal: 18 u. A grazing ray
 // magnifies all of them alike, and the offset too.
 MYRIAD_FN vec3 ray_origin(vec3 p, vec3 normal, float reach) { return p + normal * (reach * 1.9073486e-6f); }
 

@@ -276,14 +276,24 @@ TEST_F(RaytraceTest, a_million_coincident_triangles) {
     EXPECT_NEAR(closest(device, tall, {{{0.2f, 0.2f, 1}, 0, {0, 0, -1}, 9}})[0].t, 1 - 1e-4f, 1e-6f);
 }
 
-// Each triangle is half as large as the one before: the cost of the best split favours a tree as deep as the list is long.
-TEST_F(RaytraceTest, depth_is_bounded) {
+// Clusters that halve in size towards a corner: the cheapest tree is as deep as they are many, so that stacks are long.
+TEST_F(RaytraceTest, deep_trees_fit_the_stack) {
     Mesh m;
-    for (int i = 0; i < 120; ++i) {
-        const float s = std::ldexp(1.0f, 60 - i);
-        for (int k = 0; k < 20; ++k) m.triangle(s * (vec3(1) + 0.1f * in_cube()), s * (vec3(1) + 0.1f * in_cube()), s * (vec3(1) + 0.1f * in_cube()));
+    for (int i = 0; i < 60; ++i) {
+        const float s = std::ldexp(1.0f, 20 - i);
+        for (int k = 0; k < 20; ++k) m.triangle(s * (vec3(1) + 0.3f * in_cube()), s * (vec3(1) + 0.3f * in_cube()), s * (vec3(1) + 0.3f * in_cube()));
     }
-    for (auto quality : {BvhQuality::quick, BvhQuality::best}) EXPECT_LE(build_bvh(m.positions, m.triangles, quality).depth, bvh_max_depth);
+    std::vector<Ray> rays;
+    for (int i = 0; i < 4000; ++i) {
+        const vec3 to = std::ldexp(1.0f, 20 - i % 60) * in_cube();
+        rays.push_back(i % 2 ? Ray{vec3(2e6f), 0, to - vec3(2e6f), INFINITY} : Ray{to, 0, vec3(1) + 0.5f * in_cube(), INFINITY});
+    }
+    for (auto quality : {BvhQuality::quick, BvhQuality::best}) {
+        const uint depth = build_bvh(m.positions, m.triangles, quality).depth;
+        EXPECT_GT(depth, 16u) << "all three registers of the packet's stack are to be used";
+        EXPECT_LE(depth, bvh_max_depth);
+        agree(device, m, rays, quality);
+    }
 }
 
 // Walks the tree: every triangle is in a leaf, every quantised box contains what lies below it.
