@@ -121,7 +121,8 @@ struct Query {
 
     bool subgroup_arithmetic() const {
         const VkSubgroupFeatureFlags wanted =
-            VK_SUBGROUP_FEATURE_BASIC_BIT | VK_SUBGROUP_FEATURE_ARITHMETIC_BIT | VK_SUBGROUP_FEATURE_BALLOT_BIT;
+            VK_SUBGROUP_FEATURE_BASIC_BIT | VK_SUBGROUP_FEATURE_ARITHMETIC_BIT | VK_SUBGROUP_FEATURE_BALLOT_BIT |
+            VK_SUBGROUP_FEATURE_SHUFFLE_BIT | VK_SUBGROUP_FEATURE_VOTE_BIT;
         return (v11.subgroupSupportedOperations & wanted) == wanted &&
                (v11.subgroupSupportedStages & VK_SHADER_STAGE_COMPUTE_BIT);
     }

@@ -34,7 +34,7 @@ Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::T
     : device_(device), settings_(settings), recorder_(device), geometry_(device, scene, triangles), lights_(device, scene, triangles),
       bvh_(device, triangles.positions, triangles.triangles), gbuffer_(device, settings.width, settings.height),
       compose_(device, settings.width, settings.height),
-      exhausted_(device, "frame", "exhausted walks", 1), host_words_(device, "frame", "frame words", 2, engine::Location::host) {
+      exhausted_(device, "frame", "exhausted walks", 1), host_words_(device, "frame", "frame words", 5, engine::Location::host) {
     const glm::vec3 far = glm::max(glm::abs(triangles.lo), glm::abs(triangles.hi));
     reach_ = std::max({far.x, far.y, far.z});
     const double area = total_area(triangles);
@@ -47,7 +47,7 @@ Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::T
     if (DirectPass::needed(lights_)) direct_.emplace(device, settings.width, settings.height);
     if (lights_.power() == 0 || settings.vpls == 0 || triangles.triangles.empty()) return;
     vpl_.emplace(device, settings.vpls);
-    vpl_->paths(lights_, settings.bounces);  // throws when no path fits
+    vpl_->prepare(recorder_, geometry_, bvh_, lights_, settings.bounces, settings.seed);  // throws when no path fits
     gather_.emplace(device, gather_visibility(settings.visibility), settings.width, settings.height);
     if (settings.filter && block_ > 1) filter_.emplace(device, settings.width, settings.height);
     if (settings.visibility != Visibility::manylods) return;
@@ -78,7 +78,6 @@ void Frame::render(const scenes::Camera& camera) {
     if (vpl_) {
         auto scope = recorder_.scope("vpls");
         vpl_->record(recorder_, geometry_, bvh_, lights_, settings_.bounces, settings_.seed);
-        recorder_.copy(vpl_->count(), host_words_, sizeof(uint));
     }
     if (vpl_) gather_indirect(pixel_angle);
     const engine::Array<vec4>* irradiance = !vpl_ ? nullptr : filter_ ? &filter_->filtered() : &gather_->irradiance();
@@ -86,11 +85,25 @@ void Frame::render(const scenes::Camera& camera) {
         auto scope = recorder_.scope("compose");
         compose_.record(recorder_, gbuffer(), irradiance, direct());
     }
-    recorder_.submit_and_wait();
+    read_back_words();
     if (vpl_) counters_.vpls = host_words_.span()[0];
     if (maps_) counters_.maps = maps_->take_counters();
     times_ = recorder_.take_times();
     report("done", 1);
+}
+
+// The few words of a frame that the host looks at: the number of VPLs, and whether every ray walk came to its end.
+void Frame::read_back_words() {
+    std::fill(host_words_.span().begin(), host_words_.span().end(), 0u);
+    auto fetch = [&](const engine::Array<uint>& from, uint64_t word) { recorder_.copy(from, host_words_, sizeof(uint), 0, word * sizeof(uint)); };
+    fetch(gbuffer_.exhausted(), 1);
+    if (direct_) fetch(direct_->exhausted(), 2);
+    if (vpl_) fetch(vpl_->count(), 0), fetch(vpl_->exhausted(), 3), fetch(exhausted_, 4);
+    recorder_.submit_and_wait();
+    for (uint exhausted : host_words_.span().subspan(1))
+        if (exhausted)
+            throw DeviceError("a ray's walk needs more than the " + std::to_string(device_.loop_limit()) +
+                              " loop iterations that this driver allows; use Mesa 23 or later, or a scene with less overlap");
 }
 
 // The many views: their maps, batch by batch, and what their VPLs bring to each pixel.
@@ -100,6 +113,7 @@ void Frame::gather_indirect(float pixel_angle) {
     for (bool fitted = false; !fitted;) {
         fitted = true;
         gather_->clear(recorder_);
+        recorder_.fill(exhausted_, 0);
         const uint32_t batch = maps_ ? maps_->batch() : std::max(gather_->max_vpls(block_), 1u);
         for (uint32_t first = 0; first < views && fitted; first += batch) {
             if (maps_) maps_->record(recorder_, *tree_, vpl_->views(), vpl_->count(), first);

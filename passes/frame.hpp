@@ -35,7 +35,7 @@ struct FrameSettings {
     bool filter = true;
     Visibility visibility = Visibility::manylods;
     MapSettings maps;
-    uint32_t log2_samples = 19;   // surface samples, leaves of the BSH
+    uint32_t log2_samples = 20;   // surface samples, leaves of the BSH
     float vpl_bound = 0;          // bound of the geometry term, 1/m^2; 0: pi * vpls / area (passes/gather)
     float bias = 0.5f;            // receiver bias, half diagonals of a texel
     // Called now and then with a stage and how much of it is done, 0 to 1.
@@ -78,6 +78,7 @@ public:
 
 private:
     void gather_indirect(float camera_pixel_angle);
+    void read_back_words();
     void report(const std::string& stage, double done) const;
 
     engine::Device& device_;

@@ -19,12 +19,6 @@ bool read(const std::string& text, T& value) {
     return error == std::errc() && stop == end;
 }
 
-std::string show(double value) {
-    char text[32];
-    const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::general, 6).ptr;
-    return {text, end};
-}
-
 }  // namespace
 
 uint64_t parse_whole(const std::string& option, const std::string& text, uint64_t least, uint64_t most) {
@@ -33,10 +27,10 @@ uint64_t parse_whole(const std::string& option, const std::string& text, uint64_
     refuse(option, text, "give a whole number from " + std::to_string(least) + " to " + std::to_string(most));
 }
 
-double parse_number(const std::string& option, const std::string& text, double least, double most) {
-    double value = 0;
+float parse_number(const std::string& option, const std::string& text, float least, float most) {
+    float value = 0;
     if (read(text, value) && value >= least && value <= most) return value;  // NaN is not
-    refuse(option, text, "give a number from " + show(least) + " to " + show(most));
+    refuse(option, text, "give a number from " + show_number(least) + " to " + show_number(most));
 }
 
 std::pair<uint32_t, uint32_t> parse_size(const std::string& option, const std::string& text) {

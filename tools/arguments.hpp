@@ -14,7 +14,7 @@ namespace myriad::tools {
 
 // All throw InputError that names the option, the text, and what would do.
 uint64_t parse_whole(const std::string& option, const std::string& text, uint64_t least, uint64_t most);  // decimal
-double parse_number(const std::string& option, const std::string& text, double least, double most);
+float parse_number(const std::string& option, const std::string& text, float least, float most);
 // "640x360"; each side from 1 to max_side.
 std::pair<uint32_t, uint32_t> parse_size(const std::string& option, const std::string& text);
 constexpr uint32_t max_side = 16384;
@@ -45,7 +45,7 @@ inline CLI::Option* add_whole(CLI::App& app, const std::string& name, uint32_t& 
 // The default is shown unless it is 0, which then means "found by the program" and is explained in `help`.
 inline CLI::Option* add_number(CLI::App& app, const std::string& name, float& value, float least, float most, const std::string& help) {
     return add_parsed(app, name, "X", value ? show_number(value) : "", help, [=, &value](const std::string& text) {
-        value = static_cast<float>(parse_number(name, text, least, most));
+        value = parse_number(name, text, least, most);
     });
 }
 

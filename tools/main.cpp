@@ -29,7 +29,9 @@ int parse_failed(const CLI::App& app, const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);  // -h and --version: prints them
     const auto commands = app.get_subcommands();
     const std::string help = "myriad " + (commands.empty() ? "" : commands.front()->get_name() + " ") + "-h";
-    return fail(bad_usage, std::string(e.what()) + "; see " + help);
+    std::string what = e.what();
+    if (const size_t at = what.find(": At Most 1"); at != std::string::npos) what = what.substr(0, at) + " is given more than once";
+    return fail(bad_usage, what + "; see " + help);
 }
 
 int run(int argc, char** argv) {

@@ -34,7 +34,7 @@ Loaded load(const RenderOptions& options, Progress& progress) {
     return loaded;
 }
 
-FrameRun render_frame(const Run& run, engine::Device& device, passes::Frame& frame, const scenes::Camera& camera) {
+FrameRun render_frame(const RunRecord& run, engine::Device& device, passes::Frame& frame, const scenes::Camera& camera) {
     FrameRun result;
     result.host = {"frame " + std::to_string(run.frames.size()), run.now_ms(), 0};
     frame.render(camera);
@@ -53,7 +53,7 @@ Picture to_picture(const std::vector<uint>& rgba, const Image& image) {
     return picture;
 }
 
-void write_images(const RenderOptions& options, Run& run, Image& image, passes::Frame& frame) {
+void write_images(const RenderOptions& options, RunRecord& run, Image& image, passes::Frame& frame) {
     if (!options.png.empty()) {
         run.exposure = options.exposure ? *options.exposure : auto_exposure(*image.rgb());
         write_png(options.png, to_picture(frame.tonemapped(static_cast<float>(*run.exposure)), image));
@@ -66,14 +66,14 @@ void write_images(const RenderOptions& options, Run& run, Image& image, passes::
     }
 }
 
-void write_reports(const RenderOptions& options, Run& run) {
+void write_reports(const RenderOptions& options, RunRecord& run) {
     if (!options.stats.empty()) write_text(options.stats, stats_json(run)), run.files.push_back(options.stats);
     if (!options.trace.empty()) write_text(options.trace, trace_json(run)), run.files.push_back(options.trace);
 }
 
 void render(const RenderOptions& options) {
     check_outputs(options);
-    Run run;
+    RunRecord run;
     Progress progress(options.quiet);
     const auto device = run.phase("device", [&] { return std::make_unique<engine::Device>(options.device); });
     run.device = device->info();

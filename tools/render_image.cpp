@@ -69,7 +69,7 @@ void require_finite(const Image& image) {
                     ", so nothing is written; look for extreme values in the scene's lights and materials, or report it");
 }
 
-std::map<std::string, std::string> image_metadata(const Run& run) {
+std::map<std::string, std::string> image_metadata(const RunRecord& run) {
     std::map<std::string, std::string> metadata = {{"scene", run.scene},
                                                    {"camera", run.camera},
                                                    {"device", run.device.name},

@@ -14,6 +14,6 @@ Image read_image(engine::Device& device, const passes::Frame& frame, const std::
 void require_finite(const Image& image);
 
 // Scene, technique, settings, revision, device: what it takes to make the image again. No times and no paths of outputs.
-std::map<std::string, std::string> image_metadata(const Run& run);
+std::map<std::string, std::string> image_metadata(const RunRecord& run);
 
 }  // namespace myriad::tools

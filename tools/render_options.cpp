@@ -32,7 +32,7 @@ void add_outputs(CLI::App& command, RenderOptions& o) {
     add_parsed(command, "--exposure", "E|auto", "auto", "factor on radiance before the tone curve of the picture; auto: brings the\n"
                "geometric mean of the luminance of all pixels that are not black to middle grey", [&o](const std::string& text) {
         o.exposure.reset();
-        if (text != "auto") o.exposure = parse_number("--exposure", text, 1e-30, 1e30);
+        if (text != "auto") o.exposure = parse_number("--exposure", text, 1e-30f, 1e30f);
     });
     add_parsed(command, "--aov", "LIST", "", "further layers of the EXR: all, or some of " + CLI::detail::join(layer_names(), ",") + ";\n"
                "N: shading normal, P: position (m), Z: depth along the camera's axis (m), all 0 where nothing is seen", [&o](const std::string& text) {

@@ -15,7 +15,7 @@ struct RenderOptions {
     std::string scene, camera;
     std::string exr, png, stats, trace;  // files; empty: not wanted
     std::vector<std::string> layers;     // of the EXR beside the beauty: some of layer_names()
-    std::optional<double> exposure;      // absent: auto
+    std::optional<float> exposure;       // absent: auto
     passes::FrameSettings frame;
     engine::DeviceOptions device;
     uint32_t repeat = 1;

@@ -20,7 +20,7 @@ double shortest(float value) { return std::strtod(show_number(value).c_str(), nu
 
 double rounded(double ms) { return std::round(ms * 1e4) / 1e4; }  // finer is noise
 
-ordered_json scene_json(const Run& run) {
+ordered_json scene_json(const RunRecord& run) {
     ordered_json scene = {{"name", run.scene}, {"camera", run.camera}, {"triangles", run.size.triangles}, {"lights", run.size.lights},
                           {"bvh_nodes", run.size.bvh_nodes}};
     if (run.size.samples) scene["samples"] = run.size.samples, scene["bsh_blocks"] = run.size.bsh_blocks;
@@ -120,7 +120,7 @@ ordered_json settings_json(const passes::FrameSettings& s, float vpl_bound) {
     return json;
 }
 
-std::string stats_json(const Run& run) {
+std::string stats_json(const RunRecord& run) {
     ordered_json json = {{"program", {{"version", version}, {"git_revision", git_revision}}},
                          {"device", {{"name", run.device.name}, {"driver", run.device.driver + " " + run.device.driver_version}}},
                          {"scene", scene_json(run)},
@@ -137,22 +137,21 @@ std::string stats_json(const Run& run) {
     return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
-std::string stats_table(const Run& run) {
+std::string stats_table(const RunRecord& run) {
     std::string text = format("%s, camera %s, %llu triangles, on %s\n", run.scene.c_str(), run.camera.c_str(),
                               static_cast<unsigned long long>(run.size.triangles), run.device.name.c_str());
     const bool many = run.frames.size() > 1;
     text += format("%-12s %10s %10s%s\n", "pass", "gpu ms", "cpu ms",
                    many ? format("   (medians of %zu frames)", run.frames.size()).c_str() : "");
-    PassSum total{"total"};
     const auto row = [&](const PassSum& pass) {
         text += format("%-12s %10.2f %10.2f\n", pass.name.c_str(), pass.gpu_ms, pass.cpu_ms);
     };
-    for (const PassSum& pass : median_passes(run.frames)) {
-        row(pass);
-        total.gpu_ms += pass.gpu_ms;
-        total.cpu_ms += pass.cpu_ms;
-    }
-    row(total);
+    for (const PassSum& pass : median_passes(run.frames)) row(pass);
+    // Not the sum of the rows: the first frame has passes that the others lack.
+    std::vector<FrameRun> totals = run.frames;
+    for (FrameRun& frame : totals)
+        for (engine::PassTime& pass : frame.passes) pass.name = "total";
+    for (const PassSum& total : median_passes(totals)) row(total);
     std::vector<double> walls;
     for (const FrameRun& frame : run.frames) walls.push_back(frame.host.ms);
     if (!walls.empty()) text += format("frame %.0f ms", median(walls));

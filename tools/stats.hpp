@@ -28,7 +28,7 @@ struct FrameRun {
     std::map<std::string, uint64_t> peak_bytes;  // by kind of buffer, since the run began
 };
 
-struct Run {
+struct RunRecord {
     engine::DeviceInfo device;
     std::string scene, camera;
     passes::SceneSize size;
@@ -45,7 +45,7 @@ struct Run {
     template <class Work>
     auto phase(const std::string& name, Work work) {
         struct Entry {
-            Run& run;
+            RunRecord& run;
             HostPhase phase;
             ~Entry() {
                 phase.ms = run.now_ms() - phase.begin_ms;
@@ -73,7 +73,7 @@ double median(std::vector<double> values);  // of an even number: the mean of th
 // The settings under the names of their options; what the technique does not use is absent.
 nlohmann::ordered_json settings_json(const passes::FrameSettings& settings, float vpl_bound);
 
-std::string stats_json(const Run& run);
-std::string stats_table(const Run& run);
+std::string stats_json(const RunRecord& run);
+std::string stats_table(const RunRecord& run);
 
 }  // namespace myriad::tools

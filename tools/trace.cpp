@@ -1,6 +1,7 @@
 #include "tools/trace.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace myriad::tools {
@@ -8,19 +9,22 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr int process = 1, cpu_track = 1, gpu_track = 2;
+// Recording has a track of its own: where the recorder's clock began is known only to a microsecond or so, and events of one
+// track must nest exactly.
+constexpr int process = 1, cpu_track = 1, recording_track = 2, gpu_track = 3;
 
 ordered_json named(const char* what, int track, const std::string& name) {
     return {{"ph", "M"}, {"pid", process}, {"tid", track}, {"name", what}, {"args", {{"name", name}}}};
 }
 
 ordered_json event(int track, const std::string& name, double begin_ms, double ms) {
-    return {{"ph", "X"}, {"pid", process}, {"tid", track}, {"name", name}, {"ts", 1000 * begin_ms}, {"dur", 1000 * ms}};
+    const auto microseconds = [](double ms) { return std::round(ms * 1e6) / 1e3; };  // to the nanosecond
+    return {{"ph", "X"}, {"pid", process}, {"tid", track}, {"name", name}, {"ts", microseconds(begin_ms)}, {"dur", microseconds(ms)}};
 }
 
 }  // namespace
 
-double gpu_offset_ms(const Run& run) {
+double gpu_offset_ms(const RunRecord& run) {
     double offset = -std::numeric_limits<double>::infinity();
     for (const FrameRun& frame : run.frames)
         for (const engine::PassTime& pass : frame.passes)
@@ -28,15 +32,15 @@ double gpu_offset_ms(const Run& run) {
     return offset;
 }
 
-std::string trace_json(const Run& run) {
+std::string trace_json(const RunRecord& run) {
     ordered_json events = {named("process_name", cpu_track, "myriad render " + run.scene), named("thread_name", cpu_track, "CPU"),
-                           named("thread_name", gpu_track, "GPU: " + run.device.name)};
+                           named("thread_name", recording_track, "CPU: recording"), named("thread_name", gpu_track, "GPU: " + run.device.name)};
     for (const HostPhase& phase : run.phases) events.push_back(event(cpu_track, phase.name, phase.begin_ms, phase.ms));
     const double gpu_ms = run.recorder_ms + gpu_offset_ms(run);
     for (const FrameRun& frame : run.frames) {
         events.push_back(event(cpu_track, frame.host.name, frame.host.begin_ms, frame.host.ms));
         for (const engine::PassTime& pass : frame.passes) {
-            events.push_back(event(cpu_track, pass.name, run.recorder_ms + pass.cpu_begin_ms, pass.cpu_ms));
+            events.push_back(event(recording_track, pass.name, run.recorder_ms + pass.cpu_begin_ms, pass.cpu_ms));
             if (pass.gpu_ms > 0) events.push_back(event(gpu_track, pass.name, gpu_ms + pass.gpu_begin_ms, pass.gpu_ms));
         }
     }

@@ -7,12 +7,12 @@
 
 namespace myriad::tools {
 
-// Chrome trace event format: a CPU track (phases of the run, frames, recording of passes) and a GPU track, in microseconds
-// since the run began.
-std::string trace_json(const Run& run);
+// Chrome trace event format: a CPU track (phases of the run, frames), one for the recording of passes, and a GPU track, in
+// microseconds since the run began.
+std::string trace_json(const RunRecord& run);
 
 // What to add to the recorder's gpu_begin_ms to get its cpu_begin_ms' clock. No scope begins on the GPU before its
 // recording ended, so the least offset that keeps this is taken: right for whichever scope waited least for its submission.
-double gpu_offset_ms(const Run& run);
+double gpu_offset_ms(const RunRecord& run);
 
 }  // namespace myriad::tools

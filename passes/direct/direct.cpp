@@ -14,8 +14,8 @@ constexpr uint32_t steps_a_ray = 4096;
 DirectPass::DirectPass(engine::Device& device, uint32_t width, uint32_t height, uint32_t lights_a_dispatch)
     : direct_(device, engine::passes_kernels, "direct/direct"),
       lights_a_dispatch_(lights_a_dispatch ? lights_a_dispatch : std::max(1u, device.loop_limit() / steps_a_ray)),
-      radiance_(device, "image", "direct light", uint64_t(width) * height),
-      exhausted_(device, "image", "direct light exhausted", 1) {}
+      radiance_(device, "images", "direct light", uint64_t(width) * height),
+      exhausted_(device, "images", "direct light exhausted", 1) {}
 
 void DirectPass::record(engine::Recorder& recorder, const GBuffer& gbuffer, const compute::Bvh& bvh, const LightTable& lights) {
     assert(gbuffer.pixels() == radiance_.count());

@@ -12,7 +12,8 @@ void main() {
     const vec4 position = push.gbuffer.positions.at[pixel];
     vec3 sum = vec3(0.0f);
     if (position.w != 0.0f) {
-        const vec3 n = unpack_direction(push.gbuffer.normals.at[pixel].x);
+        const uvec2 normals = push.gbuffer.normals.at[pixel];
+        const vec3 n = unpack_direction(normals.x), n_g = unpack_direction(normals.y);
         const float scale = position.w * push.pixel_angle * float(push.block);
         const int x = int(pixel % width), y = int(pixel / width), reach = filter_reach(push.block);
         float total = 0.0f;
@@ -22,7 +23,7 @@ void main() {
                 const vec4 q = push.gbuffer.positions.at[i];
                 if (q.w == 0.0f) continue;
                 const float w = filter_tap(dx, push.block) * filter_tap(dy, push.block) *
-                                filter_alike(position.xyz, n, q.xyz, unpack_direction(push.gbuffer.normals.at[i].x), scale);
+                                filter_alike(position.xyz, n, n_g, q.xyz, unpack_direction(push.gbuffer.normals.at[i].x), scale);
                 sum += w * push.irradiance.at[i].xyz;
                 total += w;
             }

@@ -19,12 +19,13 @@ MYRIAD_FN float filter_tap(int offset, uint block) {
     return block % 2u == 0u && (offset == filter_reach(block) || offset == -filter_reach(block)) ? 0.5f : 1.0f;
 }
 
-// How alike two surface points are: p, n of the pixel; q, m of its neighbour. `scale` in metres: the window's width there.
-MYRIAD_FN float filter_alike(vec3 p, vec3 n, vec3 q, vec3 m, float scale) {
+// How alike two surface points are: p, n, n_g (position, shading and geometric normal) of the pixel; q, m of its neighbour. `scale` in
+// metres: the window's width there. The tangent plane is the geometric one: interpolated normals would take a flat facet for a step.
+MYRIAD_FN float filter_alike(vec3 p, vec3 n, vec3 n_g, vec3 q, vec3 m, float scale) {
     const float c = max(dot(n, m), 0.0f);
     const float c2 = c * c;
     const float c4 = c2 * c2;
-    const float off = abs(dot(n, q - p)) / scale;
+    const float off = abs(dot(n_g, q - p)) / scale;
     const float near = max(1.0f - off * off, 0.0f);
     return c4 * c4 * c4 * c4 * near * near;
 }

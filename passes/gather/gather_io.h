@@ -45,6 +45,11 @@ MYRIAD_FN float bounded_geometry(vec3 x, vec3 n, vec3 vpl_position, vec3 vpl_nor
     return min((cos_receiver / d2) * (cos_vpl / d2), bound);
 }
 
+// Irradiance that a VPL brings: flux * (bounded_geometry * gather_scale). Scaled VPL by VPL, so that a sum may be continued.
+MYRIAD_FN float gather_scale(uint block) { return float(block * block) / 3.14159265f; }
+// No pixel gets more, so that later sums stay finite whatever the flux (W/m^2; the sun brings 1e3).
+const float gather_most = 1e30f;
+
 // Where a VPL at `vpl_position` looks for the receiver x with geometric normal n_g in its map, and the distance up to which a
 // surface in that texel hides it (metres).
 struct MapQuery {

@@ -19,8 +19,10 @@ void main() {
     const vec3 n_g = unpack_direction(normals.y);
 
     const uint sets = push.block * push.block;
+    const float scale = gather_scale(push.block);
     const uint end = min(push.first + push.limit, push.count.at[0]);
-    vec3 sum = vec3(0.0f);
+    // Continues the sum that is there in order, so the bits do not depend on how VPLs are split over dispatches.
+    vec3 sum = push.irradiance.at[p].xyz;
     // The index depends on the workgroup alone, so a VPL is read once for all its lanes.
     for (uint i = push.first + pixel.set; i < end; i += sets) {
         const Vpl vpl = push.vpls.at[i];
@@ -31,8 +33,8 @@ void main() {
                 const MapQuery q = map_query(x, n_g, vpl.position, push.map_size, push.bias);
                 hidden = map_hides(uintBitsToFloat(push.atlas.at[(i - push.first_map) * map_texels(push.map_size) + q.texel]), q);
             }
-            if (!hidden) sum += vpl.flux * g;
+            if (!hidden) sum += vpl.flux * (g * scale);
         }
     }
-    push.irradiance.at[p] += vec4(sum * (float(sets) / 3.14159265f), 0.0f);
+    push.irradiance.at[p] = vec4(min(sum, vec3(gather_most)), 0.0f);
 }

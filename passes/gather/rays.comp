@@ -9,23 +9,26 @@ layout(push_constant, scalar) uniform Push { GatherRaysPush push; };
 void main() {
     const GatherPixel pixel = gather_pixel(workgroup_index(), gl_LocalInvocationIndex, gl_WorkGroupSize.x, push.gbuffer.width,
                                            push.gbuffer.height, push.block);
-    if (!pixel.inside) return;
-    const uint p = pixel.y * push.gbuffer.width + pixel.x;
+    const uint p = pixel.inside ? pixel.y * push.gbuffer.width + pixel.x : 0u;
     const vec4 position = push.gbuffer.positions.at[p];
-    if (position.w == 0.0f) return;
+    // Pixels without a receiver stay, and ask for nothing: rays are traced by whole subgroups (trace.glsl).
+    const bool receives = pixel.inside && position.w != 0.0f;
     const vec3 x = position.xyz;
     const uvec2 normals = push.gbuffer.normals.at[p];
     const vec3 n = unpack_direction(normals.x);
     const vec3 origin = ray_origin(x, unpack_direction(normals.y), push.reach);
 
     const uint sets = push.block * push.block;
+    const float scale = gather_scale(push.block);
     const uint end = min(push.first + push.limit, push.count.at[0]);
-    vec3 sum = vec3(0.0f);
+    vec3 sum = receives ? push.irradiance.at[p].xyz : vec3(0.0f);  // as in maps.comp
     for (uint i = push.first + pixel.set; i < end; i += sets) {
         const Vpl vpl = push.vpls.at[i];
-        const float g = bounded_geometry(x, n, vpl.position, unpack_direction(vpl.normal), push.bound);
-        if (g > 0.0f && !trace_occluded(push.bvh, origin, vpl.position - origin, 0.0f, 1.0f)) sum += vpl.flux * g;
+        const float g = receives ? bounded_geometry(x, n, vpl.position, unpack_direction(vpl.normal), push.bound) : 0.0f;
+        const bool asks = g > 0.0f;
+        if (!subgroupAny(asks)) continue;
+        if (!trace_occluded(push.bvh, origin, vpl.position - origin, 0.0f, asks ? 1.0f : -1.0f) && asks) sum += vpl.flux * (g * scale);
     }
-    push.irradiance.at[p] += vec4(sum * (float(sets) / 3.14159265f), 0.0f);
+    if (receives) push.irradiance.at[p] = vec4(min(sum, vec3(gather_most)), 0.0f);
     if (trace_exhausted) push.status.at[0] = 1u;
 }

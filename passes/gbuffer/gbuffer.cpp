@@ -17,9 +17,9 @@ CameraPush camera_push(const scenes::Camera& camera, uint32_t width, uint32_t he
 }
 
 GBuffer::GBuffer(engine::Device& device, uint32_t width_, uint32_t height_)
-    : width(width_), height(height_), positions(device, "image", "g-buffer positions", pixels()),
-      normals(device, "image", "g-buffer normals", pixels()), albedo(device, "image", "g-buffer albedo", pixels()),
-      emitted(device, "image", "g-buffer emitted", pixels()) {
+    : width(width_), height(height_), positions(device, "images", "g-buffer positions", pixels()),
+      normals(device, "images", "g-buffer normals", pixels()), albedo(device, "image", "g-buffer albedo", pixels()),
+      emitted(device, "images", "g-buffer emitted", pixels()) {
     assert(pixels() > 0 && pixels() < uint64_t(1) << 32);
 }
 
@@ -30,8 +30,8 @@ GBufferRef GBuffer::read(engine::Recorder& recorder) const {
 
 GBufferPass::GBufferPass(engine::Device& device, uint32_t width, uint32_t height)
     : trace_(device, passes_kernels, "gbuffer/trace"), shade_(device, passes_kernels, "gbuffer/shade"),
-      gbuffer_(device, width, height), hits_(device, "image", "primary hits", gbuffer_.pixels()),
-      exhausted_(device, "image", "primary hits exhausted", 1) {}
+      gbuffer_(device, width, height), hits_(device, "images", "primary hits", gbuffer_.pixels()),
+      exhausted_(device, "images", "primary hits exhausted", 1) {}
 
 void GBufferPass::record(engine::Recorder& recorder, const Geometry& geometry, const compute::Bvh& bvh, const scenes::Camera& camera) {
     const CameraPush push = camera_push(camera, gbuffer_.width, gbuffer_.height);

@@ -14,7 +14,7 @@ struct Light {
     vec3 position;       // point, spot; directional: the low corner of the scene's bounds
     uint type;
     vec3 direction;      // spot, directional: the way the light travels, unit
-    float cdf;           // share of the power of this light and all before it; the last is 1
+    float cdf;           // share of this light and all before it, by power where nothing else is said; the last is 1
     vec3 intensity;      // W/sr (point, spot), W/m^2 (directional), radiance (triangle; the mean over its texture)
     uint triangle;       // emissive triangle only
     vec3 extent;         // directional: the size of the scene's bounds; x alone: the width of a spot's falloff, a cosine;

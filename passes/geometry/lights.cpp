@@ -61,10 +61,9 @@ double area_of(const scenes::Triangles& triangles, const uvec4& t) {
 
 LightData light_data(const scenes::Scene& scene, const scenes::Triangles& triangles) {
     LightData data;
-    std::vector<double> powers;
     for (const scenes::Light& light : scene.lights) {
         data.lights.push_back(punctual_light(light, triangles));
-        powers.push_back(power_of(data.lights.back()));
+        data.powers.push_back(power_of(data.lights.back()));
     }
     data.punctual = uint32_t(data.lights.size());
 
@@ -78,27 +77,31 @@ LightData light_data(const scenes::Scene& scene, const scenes::Triangles& triang
         if (!(power > 0)) continue;
         data.lights.push_back({.position = vec3(0), .type = light_triangle, .direction = vec3(0), .cdf = 0,
                                .intensity = vec3(radiance[material]), .triangle = uint(i), .extent = vec3(float(area), 0, 0), .cos_outer = 0});
-        powers.push_back(power);
+        data.powers.push_back(power);
     }
-
-    for (double power : powers) data.power += power;
-    double sum = 0;
-    for (size_t i = 0; i < powers.size(); ++i) {
-        sum += powers[i];
-        data.lights[i].cdf = data.power > 0 ? float(sum / data.power) : 0;
-    }
-    // Rounding must not leave a gap at the end, nor give it to lights that do not shine.
-    for (size_t i = powers.size(); data.power > 0 && i-- > 0;) {
-        data.lights[i].cdf = 1;
-        if (powers[i] > 0) break;
-    }
+    for (double power : data.powers) data.power += power;
+    share_out(data.lights, data.powers);
     return data;
+}
+
+void share_out(std::vector<Light>& lights, const std::vector<double>& weights) {
+    double total = 0, sum = 0;
+    for (double weight : weights) total += weight;
+    for (size_t i = 0; i < lights.size(); ++i) {
+        sum += weights[i];
+        lights[i].cdf = total > 0 ? float(sum / total) : 0;
+    }
+    // Rounding must not leave a gap at the end, nor give it to lights of no weight.
+    for (size_t i = lights.size(); total > 0 && i-- > 0;) {
+        lights[i].cdf = 1;
+        if (weights[i] > 0) break;
+    }
 }
 
 LightTable::LightTable(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles)
     : LightTable(device, light_data(scene, triangles)) {}
 
-LightTable::LightTable(engine::Device& device, const LightData& data)
-    : lights_(engine::upload(device, "scene", "lights", data.lights)), punctual_(data.punctual), power_(data.power) {}
+LightTable::LightTable(engine::Device& device, LightData data)
+    : data_(std::move(data)), lights_(engine::upload(device, "scene", "lights", data_.lights)) {}
 
 }  // namespace myriad::passes

@@ -73,15 +73,16 @@ bool ViewMaps::accept() {
     const uint64_t next = grown(report.next_needed, lists_->next_capacity());
     const uint64_t kept = grown(report.kept_needed, lists_->kept_capacity());
     const uint64_t old = AppendLists::bytes(device_, settings_.append, lists_->next_capacity(), lists_->kept_capacity());
-    const bool fits = std::max(next, kept) <= AppendLists::max_capacity &&
-                      AppendLists::bytes(device_, settings_.append, next, kept) <= device_.memory_free() + old;
+    const uint64_t need = AppendLists::bytes(device_, settings_.append, next, kept);
+    // The lists' counters and the scan's upper levels come on top.
+    const bool fits = std::max(next, kept) <= AppendLists::max_capacity && need + need / 256 + 4096 <= device_.memory_free() + old;
     if (fits) {
         make_lists(next, kept);
     } else if (batch_ > multiple_) {
         halve();
         make_atlas();
     } else {
-        throw OutOfMemory("the lists of " + std::to_string(batch_) + " views need " + std::to_string((next + kept) * 8 >> 20) +
+        throw OutOfMemory("the lists of " + std::to_string(batch_) + " views need " + std::to_string((need >> 20) + 1) +
                           " MiB, which --memory-limit does not leave; raise it, or lower --map-size, or raise --epsilon");
     }
     return false;

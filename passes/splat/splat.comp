@@ -6,20 +6,30 @@
 layout(constant_id = 2) const uint threads_per_group = 1u;
 layout(push_constant, scalar) uniform Push { SplatPush push; };
 
-void draw(View view, Sphere sphere, uint cone, uint map) {
-    const Splat s = splat_of(view, sphere, cone, push.grow, push.flat_cos);
+void draw_half(Splat s, uint half_index, uint map) {
+    const Footprint f = footprint(half_index, s.d, s.radius);
     const uint size = push.map_size;
-    for (uint half_index = 0u; half_index < 2u; ++half_index) {
-        const Footprint f = footprint(half_index, s.d, s.radius);
-        if (!f.exists) continue;
-        const uint x0 = splat_first(f.center.x - f.radius, size), x1 = splat_end(f.center.x + f.radius, size);
-        const uint y0 = splat_first(f.center.y - f.radius, size), y1 = splat_end(f.center.y + f.radius, size);
-        for (uint y = y0; y < y1; ++y)
-            for (uint x = x0; x < x1; ++x) {
-                const float depth = splat_depth(s, unproject(half_index, texel_middle(x, y, size)));
-                if (depth > 0.0f) atomicMin(push.atlas.at[map + texel_index(half_index, x, y, size)], floatBitsToUint(depth));
-            }
+    const uint x0 = splat_first(f.center.x - f.radius, size), x1 = splat_end(f.center.x + f.radius, size);
+    const uint y0 = splat_first(f.center.y - f.radius, size), y1 = splat_end(f.center.y + f.radius, size);
+    if (x0 >= x1) return;
+    // One loop over the rectangle, not two: lanes whose rectangles differ in shape stay together.
+    uint x = x0;
+    for (uint y = y0; y < y1;) {
+        const float depth = splat_depth(s, unproject(half_index, texel_middle(x, y, size)));
+        if (depth > 0.0f) atomicMin(push.atlas.at[map + texel_index(half_index, x, y, size)], floatBitsToUint(depth));
+        ++x;
+        if (x == x1) {
+            x = x0;
+            ++y;
+        }
     }
+}
+
+void draw(View view, Sphere sphere, uint cone, uvec2 box, uint map) {
+    const Splat s = splat_of(view, sphere, cone, box);
+    const uint near = half_of(s.d);
+    draw_half(s, near, map);
+    if (abs(s.d.x) <= s.radius) draw_half(s, 1u - near, map);  // crosses the equator
 }
 
 void main() {
@@ -34,6 +44,6 @@ void main() {
     const uint map = (g.view - push.first_view) * map_texels(push.map_size);
     for (; drawn != 0u; drawn &= drawn - 1u) {
         const uint slot = 8u * g.block + findLSB(drawn);
-        draw(view, bsh_decode(frame, push.tree.spheres.at[slot]), push.tree.cones.at[slot], map);
+        draw(view, bsh_decode(frame, push.tree.spheres.at[slot]), push.tree.cones.at[slot], push.tree.boxes.at[slot], map);
     }
 }

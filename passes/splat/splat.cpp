@@ -27,7 +27,7 @@ void SplatPass::record(engine::Recorder& recorder, const SplatInputs& in, const 
                          .atlas = recorder.write(atlas),
                          .capacity = uint(in.cut.kept_capacity()),
                          .map_size = in.map_size,
-                         .first_view = in.first_view, .grow=getenv("GROW")?(float)atof(getenv("GROW")):1, .flat_cos=getenv("FC")?(float)atof(getenv("FC")):0.866f};
+                         .first_view = in.first_view};
     });
 }
 

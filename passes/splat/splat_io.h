@@ -9,10 +9,9 @@
 MYRIAD_BEGIN
 const uint atlas_nothing = 0x7f800000u;  // +infinity: no surface in this texel
 
-// Up to this half-angle of its normal cone a node is drawn as a piece of a plane. A plane through a patch that turns by
-// theta to either side errs by r sin(theta) inside a sphere of radius r, and the middle of the sphere by r: at 30 degrees
-// the plane errs half as much.
-const float splat_flat_cos = 0.866f;
+// How much larger than its box a node is drawn, in radii: the box's codes are good to 1/511 of the radius and the plane's
+// normal to 1/2047, so a thin box may lie beside its own plane by their sum and more at its rim.
+const float splat_margin = 1.0f / 128.0f;
 
 struct SplatPush {
     Uint2s groups;
@@ -21,7 +20,6 @@ struct SplatPush {
     Views views;
     Uints atlas;
     uint capacity, map_size, first_view;
-    float grow, flat_cos;
 };
 
 // A node as one view sees it.
@@ -30,34 +28,29 @@ struct Splat {
     float radius;
     vec3 normal;
     float height;    // d . normal: how far the view lies off the node's plane
-    float tangent2;  // L^2 - r^2
-    bool flat_patch;
+    vec3 low, high;  // the box, around the centre
 };
 
-MYRIAD_FN Splat splat_of(View view, Sphere sphere, uint cone, float grow, float flat_cos) {
+MYRIAD_FN Splat splat_of(View view, Sphere sphere, uint cone, uvec2 box_code) {
     Splat s;
     s.d = sphere.center - view.position;
     s.radius = sphere.radius;
     s.normal = bsh_cone_axis(cone);
+    if ((cone >> 24) == 255u) s.normal = s.d / sqrt(dot(s.d, s.d));  // no normal to speak of: face the view
     s.height = dot(s.d, s.normal);
-    s.tangent2 = dot(s.d, s.d) - sphere.radius * sphere.radius;
-    s.flat_patch = bsh_cone_cos_sin(cone).x >= flat_cos;
-    if (s.flat_patch) s.radius *= grow;
+    const BshBox box = bsh_decode_box(box_code, sphere.radius);
+    const float margin = splat_margin * sphere.radius;
+    s.low = box.low - margin;
+    s.high = box.high + margin;
     return s;
 }
 
 // The depth (metres along the unit direction w) that the node gives to a texel with its middle at w; negative: none.
 MYRIAD_FN float splat_depth(Splat s, vec3 w) {
-    const float along = dot(w, s.d);
-    if (!s.flat_patch) {
-        // Inside the outline: the angle between w and d is at most beta, cos(beta) = sqrt(L^2 - r^2) / L.
-        return s.tangent2 > 0.0f && along > 0.0f && along * along >= s.tangent2 ? along : -1.0f;
-    }
-    const float slope = dot(w, s.normal);
-    const float t = s.height / slope;  // may be infinite or NaN: the comparisons below then fail
-    if (!(t > 0.0f)) return -1.0f;
-    const vec3 off = t * w - s.d;
-    return dot(off, off) <= s.radius * s.radius ? t : -1.0f;
+    const float t = s.height / dot(w, s.normal);  // may be infinite or NaN: the comparisons below then fail
+    const vec3 q = t * w - s.d;
+    const bool inside = q.x >= s.low.x && q.y >= s.low.y && q.z >= s.low.z && q.x <= s.high.x && q.y <= s.high.y && q.z <= s.high.z;
+    return t > 0.0f && inside ? t : -1.0f;
 }
 
 // The texels of one axis whose middles may lie in [middle - radius, middle + radius]: first, and one past the last.

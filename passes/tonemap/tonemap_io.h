@@ -12,8 +12,10 @@ struct TonemapPush {
     float exposure;   // radiance that maps to 1 before the curve is 1 / exposure
 };
 
-// Narkowicz 2015, "ACES filmic tone mapping curve".
-MYRIAD_FN float filmic(float x) {
+// Narkowicz 2015, "ACES filmic tone mapping curve". It meets 1 at 7.25: what is brighter is white, before its square leaves the range of
+// floats. What is below 0, or not a number, is black.
+MYRIAD_FN float filmic(float radiance) {
+    const float x = radiance > 0.0f ? min(radiance, 8.0f) : 0.0f;
     const float y = (x * (2.51f * x + 0.03f)) / (x * (2.43f * x + 0.59f) + 0.14f);
     return clamp(y, 0.0f, 1.0f);
 }

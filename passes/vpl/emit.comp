@@ -1,12 +1,14 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One invocation a path: chooses a light by power, a ray from it, and leaves the path's first VPL.
+// One invocation a path: chooses a light by its share, a ray from it, and leaves the path's first VPL.
 #include "engine/kernel.glsl"
 #include "passes/vpl/vpl_io.h"
 layout(push_constant, scalar) uniform Push { VplEmitPush push; };
 #include "passes/vpl/path.glsl"
 
-// The first light whose share of the power ends beyond `selection`. A light without power has no share.
+layout(constant_id = 2) const bool guided = false;
+
+// The first light whose share ends beyond `selection`. A light without power has none.
 uint light_for(float selection) {
     uint low = 0u;
     uint high = push.light_count - 1u;
@@ -16,6 +18,27 @@ uint light_for(float selection) {
         else low = middle + 1u;
     }
     return low;
+}
+
+// Which of the guide's strips `x` falls in, one coordinate of a place: returns the place that is as far through the strip
+// of the domain, where `density` times as many paths go as without a guide. Strips only get wider or narrower, in order:
+// points that fill the square evenly fill each cell evenly.
+float into_strip(uint first, float x, out uint strip, inout float density) {
+    strip = 0u;
+    for (uint step_ = guide_side / 2u; step_ > 0u; step_ /= 2u)
+        if (push.cells.at[first + strip + step_ - 1u] <= x) strip += step_;
+    const float before = strip > 0u ? push.cells.at[first + strip - 1u] : 0.0;
+    const float width = push.cells.at[first + strip] - before;
+    density *= width * float(guide_side);
+    return (float(strip) + (x - before) / width) / float(guide_side);
+}
+
+vec2 guide(uint light, vec2 x, out float density) {
+    density = 1.0;
+    if (!guided) return x;
+    uint column, row;
+    const float place = into_strip(light * guide_floats, x.x, column, density);
+    return vec2(place, into_strip(light * guide_floats + guide_side * (column + 1u), x.y, row, density));
 }
 
 void main() {
@@ -37,7 +60,8 @@ void main() {
         if (s.double_sided && (selection - before) / share >= 0.5) s.geometric_normal = -s.geometric_normal;
         leave_vpl(0u, path, s, pi * light.extent.x * to_path * s.emission, 0u);
     } else if (push.on.layer < push.layers) {
-        const Emission e = emit_punctual(light, x);
-        follow_ray(path, e.origin, e.direction, e.flux * to_path, 1u);
+        float density;
+        const Emission e = emit_punctual(light, guide(chosen, x.xy, density));
+        follow_ray(path, e.origin, e.direction, e.flux * (to_path / density), 1u);
     }
 }

@@ -1,26 +1,44 @@
 #include "passes/vpl/vpl.hpp"
 
+#include <algorithm>
 #include <bit>
 
 #include "engine/transfer.hpp"
 #include "passes/kernels.hpp"
+#include "passes/vpl/vpl_sampling.h"
 
 namespace myriad::passes {
 
 using engine::passes_kernels;
 
+namespace {
+
+constexpr uint32_t path_limit = 1u << 24;  // above, path_selection would tell neighbouring paths apart no more
+constexpr uint64_t most_paths = 8;         // a VPL that is asked for: the patience with light that misses everything
+constexpr uint64_t most_slots = 16;        // likewise, which bounds memory where there are many bounces
+constexpr double fill = 0.98;              // of what is asked for is aimed at, for the next seed may find a little more
+
+}  // namespace
+
 VplPass::VplPass(engine::Device& device, uint32_t max_vpls)
-    : emit_(device, passes_kernels, "vpl/emit"), bounce_(device, passes_kernels, "vpl/bounce"),
-      compact_(device, passes_kernels, "vpl/compact"), slots_(device, "vpls", "VPL slots", max_vpls),
-      vpls_(device, "vpls", "VPLs", max_vpls), alive_(device, "vpls", "VPL slots alive", max_vpls + 1),
-      slot_count_(engine::upload(device, "vpls", "VPL slot count", std::vector<uint>{max_vpls})),
-      count_(device, "vpls", "VPL count", 1), exhausted_(device, "vpls", "VPL paths exhausted", 1),
-       views_(device, "vpls", "VPL views", max_vpls), scan_(device, max_vpls) {
-    // Above, path_selection would tell neighbouring paths apart no more.
-    assert(max_vpls >= 1 && max_vpls <= 1u << 24);
+    : device_(device), emit_(device, passes_kernels, "vpl/emit"), emit_guided_(device, passes_kernels, "vpl/emit", {{2, 1}}),
+      bounce_(device, passes_kernels, "vpl/bounce"), compact_(device, passes_kernels, "vpl/compact"),
+      vpls_(device, "vpls", "VPLs", max_vpls), count_(device, "vpls", "VPL count", 2),
+      exhausted_(device, "vpls", "VPL paths exhausted", 1), views_(device, "vpls", "VPL views", max_vpls) {
+    assert(max_vpls >= 1 && max_vpls <= path_limit);
+    make_slots(max_vpls);
 }
 
-uint32_t VplPass::paths(const LightTable& lights, uint32_t bounces) const {
+void VplPass::make_slots(uint64_t slots) {
+    if (slots <= slots_.count()) return;
+    slots_ = {}, alive_ = {}, scan_.reset();  // first, so that memory need not hold both
+    slots_ = {device_, "vpls", "VPL slots", slots};
+    alive_ = {device_, "vpls", "VPL slots alive", slots + 1};
+    slot_count_ = engine::upload(device_, "vpls", "VPL slot count", std::vector<uint>{uint(slots)});
+    scan_.emplace(device_, slots);
+}
+
+uint32_t VplPass::sure_paths(const LightTable& lights, uint32_t bounces) const {
     const uint32_t each = vpls_a_path(lights, bounces);
     if (!(lights.power() > 0) || each == 0) return 0;
     if (max_vpls() < each)
@@ -29,10 +47,45 @@ uint32_t VplPass::paths(const LightTable& lights, uint32_t bounces) const {
     return max_vpls() / each;
 }
 
+void VplPass::prepare(engine::Recorder& recorder, const Geometry& geometry, const compute::Bvh& bvh, const LightTable& lights,
+                      uint32_t bounces, uint32_t seed) {
+    const uint32_t sure = sure_paths(lights, bounces);
+    paths_ = sure, bounces_ = bounces, seed_ = seed;
+    guide_.reset();
+    if (sure == 0) return;
+    // Neither the guide nor, as a rule, the number of paths knows the points that are used in the end: else the sum of their
+    // fluxes, being looked at before it is chosen, would be biased.
+    const uint32_t pilot_seed = hash(seed ^ 0x5eedu);
+    guide_.emplace(recorder, geometry, bvh, lights, pilot_seed);
+    const auto alive = [&](uint32_t with_seed) {
+        make_slots(uint64_t(paths_) * vpls_a_path(lights, bounces));
+        {
+            auto scope = recorder.scope("vpl trial");
+            record_paths(recorder, geometry, bvh, lights, bounces, with_seed, paths_);
+        }
+        recorder.submit_and_wait();
+        return engine::download(device_, count_)[1];
+    };
+    const auto scaled = [&](uint32_t found) { return uint64_t(fill * double(paths_) * max_vpls() / std::max(found, 1u)); };
+    const uint64_t most = std::min<uint64_t>({most_paths * max_vpls(), most_slots * max_vpls() / vpls_a_path(lights, bounces), path_limit});
+    for (int trial = 0; trial < 2; ++trial) paths_ = uint32_t(std::clamp<uint64_t>(scaled(alive(pilot_seed)), sure, most));
+    while (paths_ > sure) {
+        const uint32_t found = alive(seed);
+        if (found <= max_vpls()) break;
+        paths_ = uint32_t(std::clamp<uint64_t>(scaled(found), sure, paths_ - 1));
+    }
+}
+
 void VplPass::record(engine::Recorder& recorder, const Geometry& geometry, const compute::Bvh& bvh, const LightTable& lights,
                      uint32_t bounces, uint32_t seed) {
+    assert(!guide_ || (bounces == bounces_ && seed == seed_));
+    record_paths(recorder, geometry, bvh, lights, bounces, seed, guide_ ? paths_ : sure_paths(lights, bounces));
+}
+
+void VplPass::record_paths(engine::Recorder& recorder, const Geometry& geometry, const compute::Bvh& bvh, const LightTable& lights,
+                           uint32_t bounces, uint32_t seed, uint32_t paths) {
     assert(bounces <= vpl_max_bounces);
-    const uint32_t paths = this->paths(lights, bounces), layers = vpls_a_path(lights, bounces);
+    const uint32_t layers = vpls_a_path(lights, bounces);
     const uint32_t first_hits = lights.has_emissive();  // the layer above the emitters' own, if they have one
     recorder.fill(exhausted_, 0);
     if (paths == 0) {
@@ -41,21 +94,22 @@ void VplPass::record(engine::Recorder& recorder, const Geometry& geometry, const
     }
     const auto on_layer = [&](uint32_t layer) {
         return VplPaths{.geometry = geometry.read(recorder), .bvh = bvh.read(recorder), .slots = recorder.write(slots_),
-                        .alive = recorder.write(alive_), .exhausted = recorder.write(exhausted_), .paths = paths, .path_bits = uint(std::bit_width(paths - 1)),
-                        .seed = seed, .layer = layer};
+                        .alive = recorder.write(alive_), .exhausted = recorder.write(exhausted_), .paths = paths,
+                        .path_bits = uint(std::bit_width(paths - 1)), .seed = seed, .layer = layer};
     };
     recorder.fill(alive_, 0);
-    recorder.dispatch(emit_,
-                      VplEmitPush{.on = on_layer(first_hits), .lights = lights.read(recorder), .light_count = lights.count(),
-                                  .layers = layers},
+    recorder.dispatch(guide_ ? emit_guided_ : emit_,
+                      VplEmitPush{.on = on_layer(first_hits), .lights = guide_ ? guide_->lights(recorder) : lights.read(recorder),
+                                  .cells = guide_ ? guide_->cells(recorder) : Floats{}, .light_count = lights.count(), .layers = layers},
                       paths);
     for (uint32_t layer = 1; layer < layers; ++layer) recorder.dispatch(bounce_, VplBouncePush{.on = on_layer(layer)}, paths);
 
-    scan_.record(recorder, alive_, slot_count_);
+    scan_->record(recorder, alive_, slot_count_);
     recorder.dispatch(compact_,
                       VplCompactPush{.slots = recorder.read(slots_), .offsets = recorder.read(alive_), .vpls = recorder.write(vpls_),
-                                     .views = recorder.write(views_), .count = recorder.write(count_), .slot_count = max_vpls()},
-                      max_vpls());
+                                     .views = recorder.write(views_), .count = recorder.write(count_),
+                                     .slot_count = uint(slots_.count()), .max_vpls = max_vpls()},
+                      slots_.count());
 }
 
 }  // namespace myriad::passes

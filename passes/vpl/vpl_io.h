@@ -32,11 +32,37 @@ struct VplPaths {
     uint layer;          // that the kernel leaves VPLs in
 };
 
+// The domain of a punctual light, the unit square that emit_punctual takes, is divided in cells of equal flux, guide_side
+// a side, and the guide says how often paths start in each. 32: small beside a window in an outline of some ten metres, and
+// a few hundred paths still visit most of them.
+const uint guide_side = 32u;
+const uint guide_cells = guide_side * guide_side;
+const uint guide_floats = guide_side + guide_cells;  // a light: ends of the columns, then of the cells in each column
+
+// What pilot paths met that started in a cell.
+struct PilotTally {
+    uint first;          // left a VPL where they hit something
+    uint second;         // and met something from there that reflects: the VPL lights something
+};
+MYRIAD_ARRAY(PilotTallies, PilotTally, 4)
+
+// "vpl/pilot": `samples` paths a cell, of two segments each.
+struct VplPilotPush {
+    GeometryRef geometry;
+    BvhRef bvh;
+    Lights lights;
+    PilotTallies tallies;  // a cell of each punctual light in turn; cleared before
+    uint samples;
+    uint paths;
+    uint seed;
+};
+
 // "vpl/emit": starts each path at a light. A path from an emissive triangle leaves a VPL in layer 0; one from a punctual
 // light, which has no surface, at the first surface that it hits, in `layer` if there is such a layer.
 struct VplEmitPush {
     VplPaths on;
-    Lights lights;
+    Lights lights;       // `cdf` is what they are chosen by
+    Floats cells;        // guide_floats a punctual light, where specialisation constant 2 says so
     uint light_count;
     uint layers;
 };
@@ -46,14 +72,15 @@ struct VplBouncePush {
     VplPaths on;
 };
 
-// "vpl/compact": moves what is alive to the front, in the order of slots, and makes each VPL's view.
+// "vpl/compact": moves what is alive to the front, in the order of slots, as far as there is room, and makes each VPL's view.
 struct VplCompactPush {
     Vpls slots;
     Uints offsets;       // `alive` after the scan: a slot is alive where the next offset differs
     Vpls vpls;
     Views views;
-    Uints count;
+    Uints count;         // VPLs kept; VPLs alive
     uint slot_count;
+    uint max_vpls;
 };
 MYRIAD_END
 

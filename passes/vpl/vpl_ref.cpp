@@ -11,12 +11,28 @@ namespace myriad::passes {
 
 using glm::dvec3;
 
-std::vector<Vpl> vpl_ref(const scenes::Scene& scene, const scenes::Triangles& triangles, uint32_t max_vpls, uint32_t bounces, uint32_t seed) {
-    const LightData table = light_data(scene, triangles);
+GuidedPlace guided_place_ref(const GuideData& guide, uint32_t light, const vec2& x) {
+    GuidedPlace at{x, 1};
+    uint32_t first = light * guide_floats;
+    for (int axis = 0; axis < 2; ++axis) {
+        uint32_t strip = 0;
+        while (guide.cells[first + strip] <= x[axis]) ++strip;
+        const double before = strip ? double(guide.cells[first + strip - 1]) : 0, width = double(guide.cells[first + strip]) - before;
+        at.place[axis] = float((strip + (double(x[axis]) - before) / width) / guide_side);
+        at.density *= width * guide_side;
+        first = light * guide_floats + guide_side * (strip + 1);
+    }
+    return at;
+}
+
+std::vector<Vpl> vpl_ref(const scenes::Scene& scene, const scenes::Triangles& triangles, uint32_t max_vpls, uint32_t bounces, uint32_t seed,
+                         const GuideData* guide, uint32_t guided_paths) {
+    LightData table = light_data(scene, triangles);
+    if (guide) table.lights = guide->lights;
     const bool emissive = table.lights.size() > table.punctual;
     const uint32_t layers = bounces + emissive;
     if (table.power == 0 || layers == 0) return {};
-    const uint32_t paths = max_vpls / layers, bits = uint32_t(std::bit_width(paths - 1));
+    const uint32_t paths = guide ? guided_paths : max_vpls / layers, bits = uint32_t(std::bit_width(paths - 1));
     const double offset = 1e-6 * std::max(glm::length(triangles.lo), glm::length(triangles.hi));
     std::vector<std::vector<Vpl>> by_layer(layers);
 
@@ -50,9 +66,10 @@ std::vector<Vpl> vpl_ref(const scenes::Scene& scene, const scenes::Triangles& tr
             if (!leave()) continue;
             direction = dvec3(cosine_direction(vec2(x.z, x.w), unpack_direction(pack_direction(vec3(normal)))));
         } else {
-            const Emission e = emit_punctual(light, x);
+            const GuidedPlace from = guide ? guided_place_ref(*guide, chosen, vec2(x)) : GuidedPlace{vec2(x), 1};
+            const Emission e = emit_punctual(light, from.place);
             at = dvec3(e.origin), direction = dvec3(e.direction), normal = dvec3(0);
-            flux = dvec3(e.flux) / (share * paths);
+            flux = dvec3(e.flux) / (share * paths * from.density);
         }
         while (++bounce <= bounces) {
             const HitRef hit = closest_ref(triangles, at + offset * normal, direction, 0, 1e30);

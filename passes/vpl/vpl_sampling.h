@@ -74,7 +74,7 @@ MYRIAD_FN uint path_index(uint path, uint path_bits) { return path_bits == 0u ? 
 MYRIAD_FN float path_selection(uint path, uint paths, uint seed) {
     return min((float(path) + to_unit(hash(seed))) / float(paths), 0.99999994f);
 }
-// Where on the light (x, y), and in which direction (z, w).
+// Where on the light, or in which direction from one that is a point (x, y); in which direction from there (z, w).
 MYRIAD_FN vec4 path_emission_point(uint index, uint seed) {
     return vec4(to_unit(owen_scramble(sobol(index, 1u), hash_pair(seed, 1u))),
                 to_unit(owen_scramble(sobol(index, 2u), hash_pair(seed, 2u))),
@@ -138,25 +138,26 @@ struct Emission {
     vec3 direction;
     vec3 flux;
 };
-MYRIAD_FN Emission emit_punctual(Light light, vec4 x) {
+// `x` is uniform over the unit square, the light's domain: uniform in flux.
+MYRIAD_FN Emission emit_punctual(Light light, vec2 x) {
     Emission e;
     e.origin = light.position;
     e.direction = light.direction;
     if (light.type == light_point) {
-        const float z = 1.0f - 2.0f * x.z;
+        const float z = 1.0f - 2.0f * x.x;
         const float r = sqrt(max(0.0f, 1.0f - z * z));
-        const vec2 around = cos_sin_turns(x.w);
+        const vec2 around = cos_sin_turns(x.y);
         e.direction = vec3(r * around.x, r * around.y, z);
         e.flux = 4.0f * pi * light.intensity;
     } else if (light.type == light_spot) {
         // By falloff: t^2 on the ramp of the cosine is inverted by a cube root, the plateau beyond is uniform.
         const float width = spot_width(light);
         const float room = 1.0f - light.cos_outer;
-        const float below = x.z * spot_solid_angle(light) / (2.0f * pi);
+        const float below = x.x * spot_solid_angle(light) / (2.0f * pi);
         const float above_outer = 3.0f * below < width ? width * cube_root(3.0f * below / width) : below + (2.0f / 3.0f) * width;
         const float k = max(0.0f, room - above_outer);  // 1 - cos: exact where a beam is narrow
         const float r = sqrt(k * (2.0f - k));
-        const vec2 around = cos_sin_turns(x.w);
+        const vec2 around = cos_sin_turns(x.y);
         e.direction = to_world(vec3(r * around.x, r * around.y, 1.0f - k), light.direction);
         e.flux = spot_solid_angle(light) * light.intensity;
     } else {

@@ -136,7 +136,7 @@ TEST(VplSampling, point_lights_go_everywhere_alike) {
     dvec3 sum(0), squares(0);
     const uint n = 1 << 14;
     for (uint i = 0; i < n; ++i) {
-        const Emission e = emit_punctual(light, path_emission_point(i, 4));
+        const Emission e = emit_punctual(light, vec2(path_emission_point(i, 4)));
         EXPECT_EQ(e.origin, light.position);
         EXPECT_EQ(e.flux, 4 * pi * light.intensity);
         sum += dvec3(e.direction) / double(n);
@@ -167,7 +167,7 @@ TEST(VplSampling, spots_follow_their_falloff) {
         const uint n = 1 << 13;
         std::vector<double> counts(11);
         for (uint i = 0; i < n; ++i) {
-            const Emission e = emit_punctual(light, path_emission_point(i, 4));
+            const Emission e = emit_punctual(light, vec2(path_emission_point(i, 4)));
             ASSERT_NEAR(glm::length(e.direction), 1, 1e-5);
             const double from_axis = (1 - double(glm::dot(e.direction, light.direction))) / (1 - rim);
             ASSERT_LE(from_axis, 1 + 2e-6 / (1 - rim));

@@ -259,8 +259,8 @@ TEST_F(VplTest, a_pass_can_be_recorded_again_with_less) {
     EXPECT_EQ(count(one, 0), 0u);    // and nothing that emits by itself
     EXPECT_EQ(count(three, 3), 0u);  // nothing reflects
     EXPECT_EQ(count(one, 1), 300u);
-    EXPECT_THROW(VplPass(device, 2).paths(one.lights, 3), InputError);
-    EXPECT_EQ(VplPass(device, 2).paths(two.lights, 3), 0u);
+    EXPECT_THROW(VplPass(device, 2).sure_paths(one.lights, 3), InputError);
+    EXPECT_EQ(VplPass(device, 2).sure_paths(two.lights, 3), 0u);
 }
 
 TEST_F(VplTest, at_any_scale_and_far_away_they_are_finite) {

@@ -1,0 +1,87 @@
+#include "passes/compose/compose.hpp"
+
+#include "engine/testing.hpp"
+#include "passes/compose/compose_ref.hpp"
+
+namespace myriad::passes {
+namespace {
+
+using glm::dvec3;
+
+class ComposeTest : public engine::DeviceTest {
+protected:
+    struct Result {
+        std::vector<vec4> indirect, beauty;
+    };
+    Result run(const HostGBuffer& host, const std::vector<vec4>* irradiance, const std::vector<vec4>* direct) {
+        const GBuffer gbuffer = host.on(device);
+        engine::Array<vec4> e, d;
+        if (irradiance) e = on_device(*irradiance);
+        if (direct) d = on_device(*direct);
+        ComposePass compose(device, host.width, host.height);
+        engine::Recorder recorder(device);
+        compose.record(recorder, gbuffer, irradiance ? &e : nullptr, direct ? &d : nullptr);
+        recorder.submit_and_wait();
+        return {engine::download(device, compose.indirect()), engine::download(device, compose.beauty())};
+    }
+    std::vector<vec4> random_image(size_t n, float scale) {
+        std::uniform_real_distribution<float> unit(0, scale);
+        std::vector<vec4> image(n);
+        for (vec4& v : image) v = {unit(random), unit(random), unit(random), unit(random)};
+        return image;
+    }
+    HostGBuffer random_gbuffer(uint32_t width, uint32_t height) {
+        HostGBuffer g(width, height);
+        g.albedo = random_image(g.pixels(), 1), g.emitted = random_image(g.pixels(), 5);
+        return g;
+    }
+    static size_t differing(const std::vector<ComposedRef>& expected, const Result& got) {
+        const auto off = [](const dvec3& e, const vec4& v) { return !(length(e - dvec3(v)) <= 1e-6 * length(e)); };
+        size_t wrong = 0;
+        for (size_t i = 0; i < expected.size(); ++i) wrong += off(expected[i].indirect, got.indirect[i]) || off(expected[i].beauty, got.beauty[i]);
+        return wrong;
+    }
+};
+
+TEST_F(ComposeTest, twin_knows_a_furnace) {
+    HostGBuffer g(1, 1);
+    g.albedo[0] = vec4(0.5f), g.emitted[0] = vec4(1);
+    const std::vector<vec4> irradiance{vec4(3.14159265f)}, direct{vec4(2)};
+    const ComposedRef c = compose_ref(g, &irradiance, &direct)[0];
+    EXPECT_NEAR(c.indirect.x, 0.5, 1e-7);
+    EXPECT_NEAR(c.beauty.x, 3.5, 1e-7);
+}
+
+TEST_F(ComposeTest, equals_the_twin_with_and_without_each_light) {
+    for (const auto& [width, height] : {std::pair{1u, 1u}, {9u, 7u}, {64u, 1u}, {65u, 33u}}) {
+        const HostGBuffer g = random_gbuffer(width, height);
+        const auto irradiance = random_image(g.pixels(), 9), direct = random_image(g.pixels(), 3);
+        for (const auto* e : {&irradiance, (const std::vector<vec4>*)nullptr})
+            for (const auto* d : {&direct, (const std::vector<vec4>*)nullptr}) {
+                const Result got = run(g, e, d);
+                EXPECT_EQ(differing(compose_ref(g, e, d), got), 0u) << width << "x" << height << (e ? ", indirect" : "") << (d ? ", direct" : "");
+                for (size_t i = 0; i < g.pixels(); ++i) EXPECT_TRUE(got.indirect[i].w == 0 && got.beauty[i].w == 1 && (e || got.indirect[i] == vec4(0)));
+            }
+    }
+}
+
+TEST_F(ComposeTest, nothing_lit_is_black_but_for_what_shines) {
+    HostGBuffer g = random_gbuffer(8, 8);
+    const Result shining = run(g, nullptr, nullptr);
+    for (size_t i = 0; i < g.pixels(); ++i) EXPECT_EQ(vec3(shining.beauty[i]), vec3(g.emitted[i]));
+    g.emitted.assign(g.pixels(), vec4(0));
+    for (const vec4& v : run(g, nullptr, nullptr).beauty) EXPECT_EQ(v, vec4(0, 0, 0, 1));
+}
+
+TEST_F(ComposeTest, comparator_sees_a_wrong_pixel) {
+    const HostGBuffer g = random_gbuffer(8, 8);
+    const auto irradiance = random_image(g.pixels(), 9);
+    const auto expected = compose_ref(g, &irradiance, nullptr);
+    Result got = run(g, &irradiance, nullptr);
+    ASSERT_EQ(differing(expected, got), 0u);
+    got.indirect[7] *= 1.001f;
+    EXPECT_EQ(differing(expected, got), 1u);
+}
+
+}  // namespace
+}  // namespace myriad::passes

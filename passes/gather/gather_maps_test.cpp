@@ -1,0 +1,163 @@
+// Visibility by maps: the query's properties on the host, and the kernel against maps of exact depths.
+#include <array>
+
+#include "passes/gather/gather_testing.hpp"
+#include "passes/geometry/test_scene.hpp"
+
+namespace myriad::passes {
+namespace {
+
+using glm::dvec3;
+
+class GatherMapsTest : public GatherTest {
+protected:
+    vec3 any_direction() {
+        switch (random() % 4) {
+            case 0: return {random() % 2 ? 1.0f : -1.0f, 0.01f * uniform(), 0.01f * uniform()};  // the axis
+            case 1: return {1e-4f * uniform(), uniform(), uniform()};                            // the equator
+            case 2: return vec3(random() % 3 == 0, random() % 3 == 1, random() % 3 == 2) + 1e-20f;  // on an axis
+            default: return direction();
+        }
+    }
+    // What a plane through x leaves in the texel of the query.
+    static float plane_depth(const vec3& vpl, const vec3& x, const vec3& n, uint size) {
+        const vec3 d = x - vpl;
+        const vec2 uv = project(d);
+        const dvec3 w(unproject(half_of(d), texel_middle(texel_coordinate(uv.x, size), texel_coordinate(uv.y, size), size)));
+        const double t = dot(dvec3(d), dvec3(n)) / dot(w, dvec3(n));
+        return t > 0 ? float(t) : std::numeric_limits<float>::infinity();
+    }
+};
+
+// Up to 89 degrees from the normal, at any distance, in any direction, the plane that a receiver lies on does not hide it.
+TEST_F(GatherMapsTest, a_plane_does_not_shadow_itself) {
+    for (int i = 0; i < 200000; ++i) {
+        const uint size = std::array{2u, 8u, 32u, 33u, 256u, 1024u}[random() % 6];
+        const float distance = std::pow(10.0f, uniform(-6, 6));
+        const vec3 to_vpl = -normalize(any_direction());
+        vec3 side = cross(to_vpl, direction());
+        if (dot(side, side) < 1e-4f) continue;
+        const float angle = 1.5533f * std::sqrt(uniform(0, 1));
+        const vec3 n = std::cos(angle) * to_vpl + std::sin(angle) * normalize(side);
+        const vec3 x = distance * point(), vpl = x + distance * to_vpl;
+        if (dot(n, vpl - x) < 0.0174f * length(vpl - x)) continue;
+        const float stored = plane_depth(vpl, x, n, size);
+        ASSERT_FALSE(map_hides(stored, map_query(x, n, vpl, size, 0.01f))) << "size " << size << ", angle " << angle;
+        // With the normal as the G-buffer keeps it, off by 4e-5, the default bias of half a texel suffices for maps up to 256.
+        ASSERT_TRUE(size > 256 || !map_hides(stored, map_query(x, unpack_direction(pack_direction(n)), vpl, size, 0.5f))) << size << " " << angle;
+    }
+}
+
+// What is clearly nearer hides: a receiver that faces the VPL within 60 degrees, an occluder at 90 % of its distance, and texels that
+// subtend so little that neither the bias nor the receiver's own plane reach that far.
+TEST_F(GatherMapsTest, an_occluder_hides) {
+    for (int i = 0; i < 100000; ++i) {
+        const uint size = std::array{64u, 128u, 1024u}[random() % 3];
+        const vec3 to_vpl = -normalize(any_direction());
+        const vec3 n = normalize(to_vpl + 0.86f * direction());
+        const vec3 x = point(), vpl = x + to_vpl * std::pow(10.0f, uniform(-2, 2));
+        const float distance = length(vpl - x);
+        const MapQuery q = map_query(x, n, vpl, size, 0.5f);
+        // tan(60) for the slope of the plane and a half for the bias, in half diagonals of a texel.
+        const float reach = (1.8f + 0.5f) * texel_angle(project(x - vpl), size) * distance;
+        ASSERT_TRUE(map_hides(distance - 1.1f * reach, q)) << size;
+        ASSERT_TRUE(size < 128 || map_hides(0.9f * distance, q));
+        ASSERT_FALSE(map_hides(distance, q));
+        ASSERT_FALSE(map_hides(std::numeric_limits<float>::infinity(), q));
+    }
+}
+
+TEST_F(GatherMapsTest, query_is_in_range_where_everything_coincides) {
+    for (const vec3& x : {vec3(0), vec3(1e-30f), vec3(1e-45f, 0, 0), vec3(1e12f), vec3(-1, 0, 0), vec3(0, 1, 0)})
+        for (const vec3& n : {vec3(1, 0, 0), vec3(0, 0, -1)})
+            for (uint size : {2u, 1024u}) ASSERT_LT(map_query(x, n, vec3(0), size, 0.5f).texel, map_texels(size));
+}
+
+TEST_F(GatherMapsTest, equals_the_twin_on_random_maps) {
+    for (uint size : {2u, 7u, 32u})
+        for (uint block : {1u, 2u, 4u}) {
+            SCOPED_TRACE(testing::Message() << "size " << size << ", block " << block);
+            const HostGBuffer g = random_gbuffer(21, 15);
+            const auto vpls = random_vpls(90);
+            std::vector<uint> atlas(vpls.size() * map_texels(size));
+            for (uint& texel : atlas) texel = floatBitsToUint(random() % 4 ? uniform(0, 3) : std::numeric_limits<float>::infinity());
+            const auto expected = gather_ref(g, vpls, block, 3, [&](size_t p, size_t i) {
+                return map_seen_ref(dvec3(g.position(p)), dvec3(g.geometric(p)), dvec3(vpls[i].position), &atlas[i * map_texels(size)], size, 0.5);
+            });
+            EXPECT_LT(doubt(expected), 0.01);
+            const Options whole{.block = block, .bound = 3, .atlas = &atlas, .map_size = size, .bias = 0.5f};
+            const auto got = run(g, vpls, whole);
+            EXPECT_TRUE(near(expected, got));
+            Options split = whole;
+            split.parts = {block * block * 2, 64};
+            EXPECT_TRUE(engine::same(got, run(g, vpls, split)));
+        }
+}
+
+// With maps of exact depths, what is left of error is their resolution: it falls as maps grow.
+TEST_F(GatherMapsTest, exact_maps_tend_to_exact_visibility) {
+    TestScene scene;
+    scene.material(vec3(1));
+    scene.room(vec3(-2), vec3(2), 0);
+    scene.quad({-1, -1, -1}, {2, 0, 0}, {0, 0, 2}, 0);
+    scene.quad({0.5f, -0.5f, -2}, {0, 1, 0}, {0, 0, 2.5f}, 0);
+    const auto& positions = scene.triangles.positions;
+    const auto& triangles = scene.triangles.triangles;
+    struct Place {
+        vec3 at, normal;
+    };
+    const auto place = [&] {
+        const uvec4& t = triangles[random() % triangles.size()];
+        const float u = uniform(0.05f, 0.45f), v = uniform(0.05f, 0.45f);
+        const vec3 n = scene.triangles.normals[t.x];
+        return Place{(1 - u - v) * positions[t.x] + u * positions[t.y] + v * positions[t.z] + 1e-5f * n, n};
+    };
+    HostGBuffer g(24, 24);
+    std::vector<Vpl> vpls;
+    for (size_t i = 0; i < g.pixels(); ++i) {
+        const Place p = place();
+        g.put(i, p.at, p.normal);
+    }
+    for (int i = 0; i < 12; ++i) {
+        const Place p = place();
+        vpls.push_back(vpl(p.at, p.normal, vec3(1)));
+    }
+    const auto exact = gather_ref(g, vpls, 1, 1, [&](size_t p, size_t i) { return ray_seen_ref(dvec3(g.position(p)), dvec3(vpls[i].position), scene.triangles); });
+    double light = 0, before = 1;
+    for (const GatherRef& r : exact) light += r.irradiance.x;
+    for (uint size : {8u, 32u, 128u}) {
+        std::vector<uint> atlas;
+        for (const Vpl& v : vpls) {
+            const auto map = exact_map(v.position, scene.triangles, size);
+            atlas.insert(atlas.end(), map.begin(), map.end());
+        }
+        const auto got = run(g, vpls, {.bound = 1, .atlas = &atlas, .map_size = size, .bias = 0.5f});
+        double error = 0;
+        for (size_t i = 0; i < got.size(); ++i) error += std::abs(got[i].x - exact[i].irradiance.x) / light;
+        EXPECT_LT(error, 0.6 * before) << "size " << size;
+        before = error;
+    }
+    EXPECT_LT(before, 0.02);
+}
+
+TEST_F(GatherMapsTest, twin_sees_what_it_must) {
+    std::vector<uint> map(map_texels(9), floatBitsToUint(1.0f));
+    const dvec3 x(3, 0.1, 0.1), n(-1, 0, 0), origin(0);
+    EXPECT_EQ(map_seen_ref(x, n, origin, map.data(), 9, 0.5), Seen::no);
+    map.assign(map.size(), floatBitsToUint(3.1f));
+    EXPECT_EQ(map_seen_ref(x, n, origin, map.data(), 9, 0.5), Seen::yes);
+    map[texel_index(half_front, 4, 4, 9)] = floatBitsToUint(1.0f);  // the texel around the axis, and no other
+    EXPECT_EQ(map_seen_ref(x, n, origin, map.data(), 9, 0.5), Seen::no);
+    EXPECT_EQ(map_seen_ref({-3, 0.1, 0.1}, n, origin, map.data(), 9, 0.5), Seen::yes);
+    EXPECT_EQ(map_seen_ref({3, 1.1, 0.1}, n, origin, map.data(), 9, 0.5), Seen::yes);
+}
+
+TEST_F(GatherMapsTest, comparator_sees_another_map) {
+    const HostGBuffer g = random_gbuffer(12, 12);
+    const auto vpls = random_vpls(20);
+    const std::vector<uint> atlas(vpls.size() * map_texels(8), floatBitsToUint(0.9f));
+    EXPECT_FALSE(near(gather_ref(g, vpls, 1, 3), run(g, vpls, {.bound = 3, .atlas = &atlas, .map_size = 8})));
+}
+
+}  // namespace
+}  // namespace myriad::passes

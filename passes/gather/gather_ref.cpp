@@ -1,0 +1,85 @@
+#include "passes/gather/gather_ref.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace myriad::passes {
+
+using glm::dvec2, glm::dvec3;
+
+std::vector<GatherRef> gather_ref(const HostGBuffer& gbuffer, const std::vector<Vpl>& vpls, uint block, double bound, const SeenRef& seen) {
+    std::vector<GatherRef> out(gbuffer.pixels());
+    for (size_t p = 0; p < out.size(); ++p) {
+        if (!gbuffer.hit(p)) continue;
+        const size_t x = p % gbuffer.width, y = p / gbuffer.width;
+        for (size_t i = 0; i < vpls.size(); ++i) {
+            if (i % (block * block) != x % block + y % block * block) continue;
+            const dvec3 d = dvec3(vpls[i].position) - dvec3(gbuffer.position(p));
+            const double distance = length(d);
+            if (distance < 1e-19) continue;  // its square is no float
+            const double cos_receiver = dot(dvec3(gbuffer.shading(p)), d) / distance;
+            const double cos_vpl = -dot(dvec3(unpack_direction(vpls[i].normal)), d) / distance;
+            const dvec3 exitance = dvec3(vpls[i].flux) / std::numbers::pi * double(block * block);
+            const double g = std::min(std::max(cos_receiver, 0.0) * std::max(cos_vpl, 0.0) / (distance * distance), bound);
+            const double rounding = std::min(4e-7 / (distance * distance), bound);
+            if (std::min(cos_receiver, cos_vpl) < -1e-6) continue;
+            const Seen s = seen(p, i);
+            if (s != Seen::no) out[p].irradiance += exitance * g;
+            out[p].slack += exitance * (s == Seen::no ? 0 : s == Seen::yes ? rounding : rounding + g);
+        }
+        out[p].slack += 1e-5 * out[p].irradiance;
+    }
+    return out;
+}
+
+Seen map_seen_ref(const dvec3& x, const dvec3& n_g, const dvec3& vpl, const uint* map, uint size, double bias) {
+    const dvec3 d = x - vpl;
+    const double distance = length(d);
+    const dvec2 uv = dvec2(d.y, d.z) / (distance + std::abs(d.x));
+    const dvec2 texel = 0.5 * double(size) * (uv + 1.0);
+    const dvec2 whole = min(floor(texel), dvec2(size - 1));
+    const dvec2 to_edge = abs(texel - round(texel));
+    if (std::min(to_edge.x, to_edge.y) < 1e-6 * size) return Seen::unsure;
+    const dvec2 middle = (2.0 * whole + 1.0) / double(size) - 1.0;
+    const double q = dot(middle, middle);
+    const dvec3 w = dvec3(d.x < 0 ? q - 1 : 1 - q, 2 * middle.x, 2 * middle.y) / (1 + q);
+    const double facing = dot(d, n_g) / distance, slope = dot(w, n_g);
+    if (std::abs(facing) < 1e-6) return Seen::unsure;
+    const double on_plane = distance * facing / slope;
+    const double depth = on_plane > 0 ? std::min(on_plane, distance) : distance;
+    const double limit = depth - bias * distance * 2 * std::numbers::sqrt2 / (size * (1 + dot(uv, uv)));
+    const double rounding = 1e-6 * (distance + depth * (1 / std::abs(facing) + 1 / std::abs(slope)));
+    const double stored = uintBitsToFloat(map[texel_index(d.x < 0 ? half_back : half_front, uint(whole.x), uint(whole.y), size)]);
+    if (std::abs(stored - limit) <= rounding) return Seen::unsure;
+    return stored < limit ? Seen::no : Seen::yes;
+}
+
+std::vector<uint> exact_map(const vec3& from, const scenes::Triangles& triangles, uint size) {
+    std::vector<uint> map;
+    for (uint half_index : {half_front, half_back})
+        for (uint y = 0; y < size; ++y)
+            for (uint x = 0; x < size; ++x) {
+                const dvec3 w(unproject(half_index, texel_middle(x, y, size)));
+                map.push_back(floatBitsToUint(float(closest_ref(triangles, dvec3(from), w, 1e-5, HitRef{}.t).t)));
+            }
+    return map;
+}
+
+Seen ray_seen_ref(const dvec3& from, const dvec3& to, const scenes::Triangles& triangles) {
+    Seen seen = Seen::yes;
+    for (const uvec4& t : triangles.triangles) {
+        const dvec3 a = dvec3(triangles.positions[t.x]) - from, b = dvec3(triangles.positions[t.y]) - from, c = dvec3(triangles.positions[t.z]) - from;
+        const dvec3 d = to - from, n = cross(b - a, c - a);
+        // Weights from the volumes that the ray spans with the edges, and t from the triangle's plane.
+        const double wa = dot(d, cross(b, c)), wb = dot(d, cross(c, a)), wc = dot(d, cross(a, b)), sum = wa + wb + wc;
+        const double inside = std::min({wa / sum, wb / sum, wc / sum}), at = dot(a, n) / dot(d, n);
+        // A ray leaves its own triangle from some 1e-6 of its length away (ray_origin), which is no doubt.
+        const double margin = std::min(inside / 1e-4, std::min(at, 1 - at) / 5e-7);
+        if (margin > 1) return Seen::no;
+        if (margin > -1) seen = Seen::unsure;
+    }
+    return seen;
+}
+
+}  // namespace myriad::passes

@@ -1,0 +1,361 @@
+// The program as users and scripts meet it: what it prints where, how it ends, and what it leaves behind (spec, section 5).
+#include <fcntl.h>
+#include <pty.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include <nlohmann/json.hpp>
+
+#include "tools/exr.hpp"
+#include "tools/png.hpp"
+#include "tools/temp_folder.hpp"
+
+namespace myriad::tools {
+namespace {
+
+using Arguments = std::vector<std::string>;
+using Environment = std::vector<std::pair<std::string, std::string>>;
+
+Arguments operator+(Arguments a, const Arguments& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+}
+
+struct Outcome {
+    int status = -1;  // 128 + signal when one ended it, as in a shell
+    std::string out, err;
+    std::ptrdiff_t error_lines() const { return std::ranges::count(err, '\n'); }
+};
+
+int status_of(int wait_status) { return WIFEXITED(wait_status) ? WEXITSTATUS(wait_status) : 128 + WTERMSIG(wait_status); }
+
+// Starts the program with its outputs in files (or wherever `err` says) and returns its process.
+pid_t start(const Arguments& arguments, const Environment& environment, const std::string& out, const std::string& err, int err_fd = -1) {
+    const pid_t child = fork();
+    if (child) return child;
+    signal(SIGINT, SIG_DFL);  // background shells ignore it, and so would the program
+    for (const auto& [name, value] : environment) setenv(name.c_str(), value.c_str(), 1);
+    const auto to = [](const std::string& path) { return open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666); };
+    dup2(to(out), STDOUT_FILENO);
+    dup2(err_fd < 0 ? to(err) : err_fd, STDERR_FILENO);
+    std::vector<char*> argv = {const_cast<char*>("myriad")};
+    for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
+    argv.push_back(nullptr);
+    execv(MYRIAD_PROGRAM, argv.data());
+    _exit(127);
+}
+
+// Lines that speak of the test machine and not of the run.
+std::string without_setup_warnings(const std::string& text) {
+    std::string kept;
+    for (size_t at = 0; at < text.size();) {
+        const size_t end = std::min(text.find('\n', at), text.size() - 1) + 1;
+        const std::string line = text.substr(at, end - at);
+        if (!contains(line, "the Khronos validation layer is not installed")) kept += line;
+        at = end;
+    }
+    return kept;
+}
+
+Outcome myriad_program(const Arguments& arguments, const Environment& environment = {}) {
+    const TempFolder pipes;
+    int status = 0;
+    waitpid(start(arguments, environment, pipes / "out", pipes / "err"), &status, 0);
+    return {status_of(status), bytes_of(pipes / "out"), without_setup_warnings(bytes_of(pipes / "err"))};
+}
+
+const Arguments tiny = {"render", "builtin:cornell", "--size", "64x48", "--vpls", "64", "--samples", "12"};
+
+class command_line : public testing::Test {
+protected:
+    // Ends with that status and one sentence on stderr, and leaves no file.
+    void refuse(int status, const Arguments& arguments, const std::string& part, const Environment& environment = {}) {
+        const Outcome o = myriad_program(arguments, environment);
+        const std::string what = testing::PrintToString(arguments) + "\n" + o.err;
+        EXPECT_EQ(o.status, status) << what;
+        EXPECT_EQ(o.error_lines(), 1) << what;
+        EXPECT_TRUE(o.err.starts_with("error: ") && contains(o.err, part)) << what;
+        EXPECT_TRUE(folder.names().empty()) << what << testing::PrintToString(folder.names());
+    }
+    void succeed(const Arguments& arguments, const Environment& environment = {}) {
+        last = myriad_program(arguments, environment);
+        EXPECT_EQ(last.status, 0) << testing::PrintToString(arguments) << "\n" << last.err;
+        EXPECT_EQ(last.err, "") << testing::PrintToString(arguments);
+    }
+
+    TempFolder folder;
+    const std::string exr = folder / "a.exr", png = folder / "a.png";
+    Outcome last;
+};
+
+TEST_F(command_line, help_names_every_option) {
+    const std::map<std::string, Arguments> options = {
+        {"", {"render", "compare", "bench", "info", "--version"}},
+        {"render", {"SCENE",     "--output",   "--png",  "--size",    "--camera",  "--seed",    "--visibility", "--append",
+                    "--vpls",    "--bounces",  "--map-size",          "--epsilon", "--samples", "--gather",     "--filter",
+                    "--vpl-bound", "--bias",   "--exposure",          "--memory-limit",         "--stats",      "--trace",
+                    "--aov",     "--device",   "--repeat", "--float", "--quiet",   "1:1",       "builtin:cornell", "W/sr"}},
+        {"compare", {"REF", "TEST", "--json", "--fail-above", "--fail-below", "--layer", "--diff", "--tolerance"}},
+        {"bench", {"--json"}},
+        {"info", {"--json", "--device"}}};
+    for (const auto& [command, names] : options) {
+        succeed(command.empty() ? Arguments{"-h"} : Arguments{command, "-h"});
+        for (const std::string& name : names) EXPECT_TRUE(contains(last.out, name)) << command << " -h lacks " << name;
+    }
+}
+
+TEST_F(command_line, version) {
+    succeed({"--version"});
+    EXPECT_TRUE(last.out.starts_with("myriad ")) << last.out;
+    EXPECT_EQ(std::ranges::count(last.out, '\n'), 1);
+}
+
+TEST_F(command_line, no_subcommand_shows_what_there_is) {
+    const Outcome o = myriad_program({});
+    EXPECT_EQ(o.status, 2);
+    EXPECT_TRUE(contains(o.out, "render"));
+    EXPECT_EQ(o.error_lines(), 1) << o.err;
+}
+
+TEST_F(command_line, bad_usage) {
+    refuse(2, {"paint"}, "paint");
+    refuse(2, {"--paint"}, "myriad -h");
+    refuse(2, {"render", "-o", exr}, "SCENE is required; see myriad render -h");
+    refuse(2, tiny + Arguments{"-o", exr, "--paint"}, "--paint; see myriad render -h");
+    refuse(2, tiny + Arguments{"-o", exr, "--visibility", "megaviews"}, "manylods, rays, none");
+    for (const char* later : {"--update", "--env", "--coverage", "--camera-path", "--frames", "--primary", "--time-budget", "--target-error"})
+        refuse(2, tiny + Arguments{"-o", exr, later, "1"}, later);  // options of the spec that are yet to come
+    refuse(2, tiny + Arguments{"-o", exr, "-o", folder / "b.exr"}, "--output is given more than once");
+    refuse(2, tiny + Arguments{"-o"}, "--output");
+    refuse(2, tiny, "no output");
+    refuse(2, tiny + Arguments{"-o", folder / "a.jpg"}, "unknown format");
+    refuse(2, {"info", "extra"}, "myriad info -h");
+    refuse(2, {"compare", exr}, "TEST is required");
+}
+
+TEST_F(command_line, bad_values) {
+    const Arguments base = {"render", "builtin:cornell", "-o", exr};
+    for (const char* size : {"0x48", "64", "-64x48", "16385x1", "99999999999x1", "axb"}) refuse(2, base + Arguments{"--size", size}, "16384");
+    for (const char* option : {"--vpls", "--bounces", "--map-size", "--samples", "--seed", "--repeat", "--memory-limit"})
+        for (const char* value : {"-1", "1.5", "nan", "18446744073709551616"})
+            refuse(2, base + Arguments{option, value}, option + std::string(" '") + value + "': give a whole number");
+    for (const char* option : {"--epsilon", "--vpl-bound", "--bias"})
+        for (const char* value : {"-1", "nan", "inf", "1e99", "x"})
+            refuse(2, base + Arguments{option, value}, option + std::string(" '") + value + "': give a number");
+    refuse(2, base + Arguments{"--gather", "subset:0"}, "--gather");
+    refuse(2, base + Arguments{"--filter", "maybe"}, "on, off");
+    refuse(2, base + Arguments{"--aov", "Q"}, "indirect");
+    refuse(2, base + Arguments{"--exposure", "0", "--png", png}, "--exposure");
+}
+
+TEST_F(command_line, bad_scenes_and_cameras) {
+    const TempFolder other;
+    put(other / "bad.glb", "not a glTF file");
+    const auto render = [&](const std::string& scene) { return Arguments{"render", scene, "-o", exr, "--size", "64x48"}; };
+    refuse(2, render("builtin:palace"), "palace");
+    refuse(2, render("builtin:cornell?colour=red"), "colour");
+    refuse(2, render(folder / "none.glb"), "none.glb");
+    refuse(2, render(other / "bad.glb"), "bad.glb");
+    refuse(2, render("two\nlines.glb"), "two lines.glb");
+    refuse(2, tiny + Arguments{"-o", exr, "--camera", "behind"}, "behind");
+    refuse(2, tiny + Arguments{"-o", exr, "--camera", "99"}, "99");
+}
+
+TEST_F(command_line, outputs_that_cannot_be_written_are_told_at_once) {
+    const TempFolder other;
+    std::filesystem::create_directory(other / "folder.exr");
+    put(other / "file", "");
+    // A scene that does not exist: were it asked for first, it would be what is complained about.
+    for (const char* option : {"-o", "--png", "--stats", "--trace"}) {
+        const std::string name = option == std::string("--png") ? "/a.png" : "/a.exr";
+        const Arguments first = option == std::string("-o") ? Arguments{"render", "none.glb"} : Arguments{"render", "none.glb", "-o", exr};
+        refuse(2, first + Arguments{option, (folder / "none").string() + name}, "does not exist; create it");
+        refuse(2, first + Arguments{option, (other / "file").string() + name}, "is a file");
+    }
+    refuse(2, {"render", "none.glb", "-o", other / "folder.exr"}, "it is a folder");
+    refuse(2, {"render", "none.glb", "-o", exr, "--stats", exr}, "twice");
+    refuse(2, {"render", "none.glb", "-o", ""}, "unknown format");
+}
+
+TEST_F(command_line, without_a_device) {
+    const Environment none = {{"VK_DRIVER_FILES", "/dev/null"}, {"VK_ICD_FILENAMES", "/dev/null"}};
+    refuse(3, tiny + Arguments{"-o", exr}, "no Vulkan device", none);
+    refuse(3, {"info"}, "no Vulkan device", none);
+    refuse(3, {"info", "--json"}, "no Vulkan device", none);
+    refuse(3, tiny + Arguments{"-o", exr, "--device", "Voodoo"}, "Voodoo");
+    refuse(3, {"info", "--device", "Voodoo"}, "Voodoo");
+}
+
+TEST_F(command_line, memory_limit) {
+    refuse(3, {"render", "builtin:cornell", "-o", exr, "--memory-limit", "1"}, "--memory-limit");
+}
+
+TEST_F(command_line, info) {
+    succeed({"info"});
+    EXPECT_TRUE(contains(last.out, "bufferDeviceAddress") && contains(last.out, "<- used") && contains(last.out, "maxPushConstantsSize"));
+    succeed({"info", "--json"});
+    const auto devices = nlohmann::json::parse(last.out)["devices"];
+    EXPECT_EQ(std::ranges::count_if(devices, [](const auto& d) { return d["picked"] == true; }), 1);
+    for (const auto& device : devices)
+        for (const char* key : {"name", "driver", "driver_version", "api", "type", "heap_bytes", "used", "missing", "degraded", "limits"})
+            EXPECT_TRUE(device.contains(key)) << key;
+}
+
+TEST_F(command_line, render_writes_what_was_asked_for) {
+    succeed(tiny + Arguments{"-o", exr, "--png", png, "--stats", folder / "s.json", "--trace", folder / "t.json", "--aov", "direct,N,Z"});
+    EXPECT_EQ(folder.names(), (Arguments{"a.exr", "a.png", "s.json", "t.json"})) << "and no temporaries";
+    for (const char* part : {"gbuffer", "gather", "total", "peak MiB", "exposure", "VPLs"}) EXPECT_TRUE(contains(last.out, part)) << last.out;
+    EXPECT_FALSE(contains(last.out, "\r"));
+
+    const Image image = read_exr(exr);
+    EXPECT_EQ(image.width, 64u);
+    EXPECT_EQ(image.height, 48u);
+    Arguments channels;
+    for (const auto& channel : image.channels) channels.push_back(channel.name);
+    std::ranges::sort(channels);
+    EXPECT_EQ(channels, (Arguments{"B", "G", "N.X", "N.Y", "N.Z", "R", "Z", "direct.B", "direct.G", "direct.R"}));
+    EXPECT_GT(*std::ranges::max_element(image.find("G")->values), 0);
+    for (const char* key : {"scene", "seed", "technique", "vpls", "bounces", "map_size", "epsilon", "append", "gather", "git_revision",
+                            "device", "driver"})
+        EXPECT_TRUE(image.metadata.contains(key)) << key;
+    EXPECT_EQ(image.metadata.at("scene"), "builtin:cornell");
+    EXPECT_EQ(image.metadata.at("technique"), "manylods");
+
+    const Picture picture = read_png(png);
+    EXPECT_EQ(picture.width * picture.height, 64u * 48u);
+    EXPECT_GT(*std::ranges::max_element(picture.rgb), 100);
+
+    const auto stats = nlohmann::json::parse(bytes_of(folder / "s.json"));
+    EXPECT_GT(stats["scene"]["triangles"], 0);
+    EXPECT_EQ(stats["scene"]["samples"], 4096);
+    ASSERT_EQ(stats["frames"].size(), 1u);
+    EXPECT_GT(stats["frames"][0]["passes"].size(), 3u);
+    for (const char* name : {"node_views", "cut", "list_capacity", "list_peak", "vpls"}) EXPECT_GT(stats["frames"][0]["counters"][name], 0);
+    EXPECT_GT(stats["frames"][0]["counters"]["peak_bytes"].size(), 3u);
+    EXPECT_GT(nlohmann::json::parse(bytes_of(folder / "t.json"))["traceEvents"].size(), 10u);
+}
+
+TEST_F(command_line, layers_add_up_to_the_beauty) {
+    succeed(tiny + Arguments{"-o", exr, "--aov", "all", "--float", "-q"});
+    EXPECT_EQ(last.out, "");
+    const Image image = read_exr(exr);
+    const auto beauty = *image.rgb(), direct = *image.rgb("direct"), indirect = *image.rgb("indirect"), emission = *image.rgb("emission");
+    for (size_t i = 0; i < image.pixels(); ++i)
+        ASSERT_NEAR(beauty.g[i], direct.g[i] + indirect.g[i] + emission.g[i], 1e-5 * (1 + beauty.g[i])) << i;
+    const auto normal = *image.rgb("N");
+    for (size_t i = 0; i < image.pixels(); ++i) {
+        const float length = std::hypot(normal.r[i], normal.g[i], normal.b[i]);
+        ASSERT_NEAR(length, image.find("Z")->values[i] > 0 ? 1 : 0, 1e-3) << i;
+    }
+}
+
+TEST_F(command_line, png_alone_and_given_to_o) {
+    succeed(tiny + Arguments{"-o", png, "--exposure", "1"});
+    const std::string first = bytes_of(png);
+    succeed(tiny + Arguments{"--png", png, "--exposure", "1"});
+    EXPECT_EQ(folder.names(), Arguments{"a.png"});
+    EXPECT_EQ(bytes_of(png), first);
+}
+
+TEST_F(command_line, repeats_are_all_counted) {
+    succeed(tiny + Arguments{"-o", exr, "--repeat", "3", "--stats", folder / "s.json"});
+    EXPECT_TRUE(contains(last.out, "medians of 3 frames")) << last.out;
+    EXPECT_EQ(nlohmann::json::parse(bytes_of(folder / "s.json"))["frames"].size(), 3u);
+}
+
+TEST_F(command_line, the_same_render_gives_the_same_bytes) {
+    succeed(tiny + Arguments{"-o", exr, "--aov", "all"});
+    const std::string first = bytes_of(exr);
+    succeed(tiny + Arguments{"-o", exr, "--aov", "all"});
+    EXPECT_TRUE(bytes_of(exr) == first) << "on a second run";
+    for (const char* threads : {"0", "1", "2"}) {
+        succeed(tiny + Arguments{"-o", exr, "--aov", "all"}, {{"LP_NUM_THREADS", threads}});
+        EXPECT_TRUE(bytes_of(exr) == first) << "with LP_NUM_THREADS=" << threads;
+    }
+    succeed(tiny + Arguments{"-o", exr, "--aov", "all", "--seed", "2"});
+    EXPECT_FALSE(bytes_of(exr) == first) << "another seed must change the image, or nothing was compared";
+}
+
+TEST_F(command_line, both_ways_to_append_give_the_same_pixels) {
+    for (const char* mode : {"scan", "atomic"}) succeed(tiny + Arguments{"-o", folder / (mode + std::string(".exr")), "--float", "--append", mode});
+    const Image scan = read_exr(folder / "scan.exr"), atomic = read_exr(folder / "atomic.exr");
+    EXPECT_EQ(atomic.metadata.at("append"), "atomic");
+    for (const char* name : {"R", "G", "B"}) EXPECT_TRUE(scan.find(name)->values == atomic.find(name)->values) << name;
+}
+
+TEST_F(command_line, ends_of_the_ranges) {
+    const std::string panel = "builtin:cornell", point = "builtin:cornell?light=point";
+    const std::vector<std::pair<std::string, Arguments>> cases = {
+        {panel, {"--visibility", "rays"}}, {point, {"--visibility", "none"}}, {panel, {"--gather", "all"}}, {point, {"--gather", "subset:1"}},
+        {panel, {"--bounces", "0"}},       {point, {"--bounces", "0"}},       {point, {"--bounces", "3"}},  {panel, {"--vpls", "0"}},
+        {panel, {"--vpls", "2"}},          {panel, {"--samples", "0"}},       {panel, {"--map-size", "2"}}, {point, {"--size", "1x1"}},
+        {panel, {"--size", "129x1"}},      {panel, {"--epsilon", "0.001"}},   {panel, {"--epsilon", "1e6"}}, {panel, {"--bias", "0"}}};
+    for (const auto& [scene, change] : cases) {
+        Arguments arguments = tiny;
+        arguments[1] = scene;
+        const auto same = std::ranges::find(arguments, change[0]);
+        if (same == arguments.end()) arguments = arguments + change;
+        else same[1] = change[1];
+        succeed(arguments + Arguments{"-o", exr});
+    }
+}
+
+TEST_F(command_line, compare) {
+    const std::string other = folder / "b.exr";
+    succeed(tiny + Arguments{"-o", exr});
+    succeed(tiny + Arguments{"-o", other, "--visibility", "none"});
+    succeed({"compare", exr, exr, "--fail-above", "MSE=0"});
+    succeed({"compare", exr, other});
+    const Outcome o = myriad_program({"compare", exr, other, "--json", "--fail-above", "MSE=0"});
+    EXPECT_EQ(o.status, 1) << o.err;
+    EXPECT_EQ(o.error_lines(), 1) << o.err;
+    EXPECT_GT(nlohmann::json::parse(o.out)["MSE"], 0);
+}
+
+TEST_F(command_line, interrupted_in_the_middle) {
+    for (int sent : {SIGINT, SIGTERM}) {
+        const TempFolder pipes;
+        const pid_t child = start(tiny + Arguments{"-o", exr, "--png", png, "--repeat", "100000"}, {}, pipes / "out", pipes / "err");
+        std::this_thread::sleep_for(std::chrono::seconds(2));
+        int status = 0;
+        ASSERT_EQ(waitpid(child, &status, WNOHANG), 0) << "it ended by itself: " << bytes_of(pipes / "err");
+        kill(child, sent);
+        waitpid(child, &status, 0);
+        EXPECT_EQ(status_of(status), 128 + sent);
+        EXPECT_TRUE(folder.names().empty()) << testing::PrintToString(folder.names());
+    }
+}
+
+TEST_F(command_line, progress_is_for_terminals) {
+    const TempFolder pipes;
+    int terminal = -1, end = -1, status = 0;
+    ASSERT_EQ(openpty(&terminal, &end, nullptr, nullptr, nullptr), 0);
+    const pid_t child = start(tiny + Arguments{"-o", exr}, {}, pipes / "out", "", end);
+    close(end);
+    std::string shown;
+    char buffer[4096];
+    for (ssize_t n; (n = read(terminal, buffer, sizeof buffer)) > 0;) shown.append(buffer, size_t(n));  // ends when the child does
+    waitpid(child, &status, 0);
+    close(terminal);
+    EXPECT_EQ(status_of(status), 0) << shown;
+    EXPECT_TRUE(contains(shown, "\r\033[K") && contains(shown, "gathering")) << shown;
+    EXPECT_TRUE(shown.ends_with("\r\033[K")) << "the line must be cleared";
+    EXPECT_FALSE(contains(bytes_of(pipes / "out"), "\r"));
+}
+
+TEST_F(command_line, a_full_disk_for_the_table_is_no_success) {
+    const TempFolder pipes;
+    int status = 0;
+    waitpid(start({"info"}, {}, "/dev/full", pipes / "err"), &status, 0);
+    EXPECT_EQ(status_of(status), 2);
+    EXPECT_TRUE(contains(bytes_of(pipes / "err"), "standard output"));
+}
+
+}  // namespace
+}  // namespace myriad::tools
