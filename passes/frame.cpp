@@ -110,24 +110,22 @@ void Frame::read_back_words() {
 void Frame::gather_indirect(float pixel_angle) {
     const GatherInputs in{gbuffer(), vpl_->vpls(), vpl_->count(), block_, vpl_bound_};
     const uint32_t views = settings_.vpls;
-    for (bool fitted = false; !fitted;) {
-        fitted = true;
-        gather_->clear(recorder_);
-        recorder_.fill(exhausted_, 0);
-        const uint32_t batch = maps_ ? maps_->batch() : std::max(gather_->max_vpls(block_), 1u);
-        for (uint32_t first = 0; first < views && fitted; first += batch) {
-            if (maps_) maps_->record(recorder_, *tree_, vpl_->views(), vpl_->count(), first);
-            {
-                auto scope = recorder_.scope("gather");
-                if (settings_.visibility == Visibility::rays)
-                    gather_->record_rays(recorder_, in, first, batch, bvh_, reach_, exhausted_);
-                else
-                    gather_->record_maps(recorder_, in, first, batch, maps_ ? &maps_->atlas() : nullptr, settings_.maps.map_size, settings_.bias);
-            }
-            recorder_.submit_and_wait();  // a batch a submission: progress, and no time-out on devices that watch
-            if (maps_) fitted = maps_->accept();
-            report("gathering", std::min(1.0, double(first + batch) / views));
+    gather_->clear(recorder_);
+    recorder_.fill(exhausted_, 0);
+    for (uint32_t first = 0; first < views;) {
+        const uint32_t batch = maps_ ? maps_->batch() : gather_->max_vpls(block_);
+        if (maps_) maps_->record(recorder_, *tree_, vpl_->views(), vpl_->count(), first);
+        {
+            auto scope = recorder_.scope("gather");
+            if (settings_.visibility == Visibility::rays)
+                gather_->record_rays(recorder_, in, first, batch, bvh_, reach_, exhausted_);
+            else
+                gather_->record_maps(recorder_, in, first, batch, maps_ ? &maps_->atlas() : nullptr, settings_.maps.map_size, settings_.bias,
+                                     maps_ ? &maps_->lists() : nullptr);
         }
+        recorder_.submit_and_wait();  // a batch a submission: progress, and no time-out on devices that watch
+        if (!maps_ || maps_->accept()) first += batch;  // else the same again, with longer lists or fewer views
+        report("gathering", std::min(1.0, double(first) / views));
     }
     if (filter_) {
         auto scope = recorder_.scope("filter");

@@ -69,6 +69,7 @@ public:
     // The state as words, for kernels that take the number of kept items: word `kept_word`.
     const engine::Array<uint>& state() const { return state_words_; }
     static constexpr uint64_t kept_word = offsetof(AppendState, kept) / sizeof(uint);
+    static constexpr uint64_t failed_word = offsetof(AppendState, failed) / sizeof(uint);
     static constexpr uint64_t sums_word = offsetof(AppendState, sums) / sizeof(uint);
 
     uint64_t next_capacity() const { return next_capacity_; }

@@ -64,7 +64,9 @@ MYRIAD_FN float criterion(vec3 d, float r, uint size) {
 // apex case of the spec: behind the apex of a cone of phi < pi/2 the nearest point is the apex itself).
 MYRIAD_FN bool outside_frustum(View view, vec3 d, float r) {
     const float a = dot(view.direction, d);
-    const float b = view.cos_phi == 0.0f ? 0.0f : sqrt(max(dot(d, d) - a * a, 0.0f));
+    if (view.cos_phi == 0.0f) return -a * view.sin_phi > r;  // a half-space: b does not matter
+    const vec3 off = d - a * view.direction;
+    const float b = sqrt(dot(off, off));  // sqrt(d^2 - a^2) would be off by 3e-4 |d| near the axis, and cull what is inside
     if (view.cos_phi > 0.0f && a * view.cos_phi + b * view.sin_phi < 0.0f) return dot(d, d) > r * r;
     return b * view.cos_phi - a * view.sin_phi > r;
 }

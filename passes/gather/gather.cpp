@@ -27,7 +27,8 @@ uint64_t GatherPass::threads(const GatherInputs& in) const {
 }
 
 void GatherPass::record_maps(engine::Recorder& recorder, const GatherInputs& in, uint32_t first, uint32_t limit,
-                             const engine::Array<uint>* atlas, uint32_t map_size, float bias) {
+                             const engine::Array<uint>* atlas, uint32_t map_size, float bias,
+                             const compute::AppendLists* lists) {
     assert(first % (in.block * in.block) == 0 && (visibility_ == GatherVisibility::none) == (atlas == nullptr));
     for (uint32_t done = 0, part = max_vpls(in.block); done < limit; done += part)
         recorder.dispatch(program_,
@@ -35,12 +36,14 @@ void GatherPass::record_maps(engine::Recorder& recorder, const GatherInputs& in,
                                      .vpls = recorder.read(in.vpls),
                                      .count = recorder.read(in.count),
                                      .atlas = atlas ? recorder.read(*atlas) : Uints{},
+                                     .failed = lists ? recorder.read(lists->state(), compute::AppendLists::failed_word) : Uints{},
                                      .irradiance = recorder.write(irradiance_),
                                      .first = first + done,
                                      .limit = std::min(part, limit - done),
                                      .block = in.block,
                                      .map_size = map_size,
                                      .first_map = first,
+                                     .has_failed = lists != nullptr,
                                      .bound = in.bound,
                                      .bias = bias},
                           threads(in));

@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 
+#include "compute/append/append.hpp"
 #include "compute/raytrace/bvh.hpp"
 #include "passes/gather/gather_io.h"
 #include "passes/gbuffer/gbuffer.hpp"
@@ -29,9 +30,10 @@ public:
 
     // Adds VPLs [first, first + limit); `first` is a multiple of block * block, so that a VPL's set does not depend on how they are
     // split. Adding them in order gives the same bits however they are split.
-    // maps: `atlas` holds the maps of these VPLs. `bias` in texels.
+    // maps: `atlas` holds the maps of these VPLs. `bias` in texels. `lists`: what the maps were made with; where they overflowed nothing
+    // is added, so that the same range can be done again.
     void record_maps(engine::Recorder& recorder, const GatherInputs& in, uint32_t first, uint32_t limit, const engine::Array<uint>* atlas,
-                     uint32_t map_size, float bias);
+                     uint32_t map_size, float bias, const compute::AppendLists* lists = nullptr);
     // rays: `reach` is the scene's largest absolute coordinate.
     void record_rays(engine::Recorder& recorder, const GatherInputs& in, uint32_t first, uint32_t limit, const compute::Bvh& bvh,
                      float reach, const engine::Array<uint>& status);

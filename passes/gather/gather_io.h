@@ -12,10 +12,12 @@ struct GatherPush {
     Vpls vpls;
     Uints count;              // how many VPLs there are
     Uints atlas;              // maps only: of VPLs [first_map, …)
+    Uints failed;             // maps only, may be null: failed.at[0] != 0 says that the atlas is not complete, and nothing is added
     Float4s irradiance;
     uint first, limit;        // VPLs [first, min(first + limit, count)); first is a multiple of block^2
     uint block;               // k: sets of VPLs, and pixels of a block, are k x k
     uint map_size, first_map; // maps only
+    uint has_failed;
     float bound;              // 1/m^2
     float bias;               // maps only, texels
 };

@@ -10,6 +10,7 @@ void main() {
     const GatherPixel pixel = gather_pixel(workgroup_index(), gl_LocalInvocationIndex, gl_WorkGroupSize.x, push.gbuffer.width,
                                            push.gbuffer.height, push.block);
     if (!pixel.inside) return;
+    if (push.has_failed != 0u && push.failed.at[0] != 0u) return;
     const uint p = pixel.y * push.gbuffer.width + pixel.x;
     const vec4 position = push.gbuffer.positions.at[p];
     if (position.w == 0.0f) return;

@@ -18,18 +18,22 @@ ViewMaps::ViewMaps(engine::Device& device, const MapSettings& settings, uint32_t
     : device_(device), settings_(settings), batch_(round_up(std::max(max_views, 1u), multiple)), multiple_(multiple), manylods_(device),
       splat_(device) {
     splat_.check_map_size(settings.map_size);
-    // An atlas may take half of what is left, and an index into it has 32 bits.
-    while (batch_ > multiple_ && (atlas_words(batch_, settings.map_size) * sizeof(uint) > device_.memory_free() / 2 ||
-                                  atlas_words(batch_, settings.map_size) >> 32))
+    // Batches as small as still keep a device busy: lists of some 64 MiB, and maps that stay in caches. An atlas may take half of what
+    // memory is left, and an index into it has 32 bits.
+    while (batch_ > multiple_ && (groups_guess(batch_) > 1 << 23 || atlas_words(batch_, settings.map_size) >> 32 ||
+                                  atlas_words(batch_, settings.map_size) * sizeof(uint) > device_.memory_free() / 2))
         halve();
     make_atlas();
-    // A guess that suffices for most scenes (measured: 0.3 to 0.6 groups a texel at epsilon 1): a redone frame costs more than memory
-    // that lies idle, but what is wrong with it costs no more than that frame.
-    const double scale = 1.0 / std::clamp(double(settings.epsilon * settings.epsilon), 0.25, 16.0);
-    const uint64_t guess = std::max<uint64_t>(uint64_t(0.7 * scale * double(atlas_words(batch_, settings.map_size))), 4096);
     const uint64_t affordable = device_.memory_free() / 2 / (4 * sizeof(uvec2));
-    const uint64_t kept = std::min({guess, affordable, AppendLists::max_capacity});
-    make_lists(std::max<uint64_t>(kept / 2, batch_), std::max<uint64_t>(kept, 1));
+    const uint64_t kept = std::min({groups_guess(batch_), affordable, AppendLists::max_capacity});
+    make_lists(std::max<uint64_t>(kept - kept / 4, batch_), std::max<uint64_t>(kept, 1));
+}
+
+// A batch that does not fit is done again with longer lists, so the guess need not be safe. Measured: up to 1 group a texel at an
+// epsilon of 2 texels and 1.6 at 1, in Sponza and the atrium; the number falls with the square of epsilon.
+uint64_t ViewMaps::groups_guess(uint32_t views) const {
+    const double epsilon = std::clamp(settings_.epsilon, 0.5f, 16.0f);
+    return std::max<uint64_t>(uint64_t(4.4 / (epsilon * epsilon) * double(atlas_words(views, settings_.map_size))), 4096);
 }
 
 void ViewMaps::halve() { batch_ = round_up(batch_ / 2, multiple_); }
@@ -65,9 +69,7 @@ bool ViewMaps::accept() {
         counters_.groups += report.kept;
         return true;
     }
-    const uint32_t redone = counters_.redone + 1;
-    counters_ = {};
-    counters_.redone = redone;
+    ++counters_.redone;
     // A quarter more than was needed: the next frame's need differs, and an overflowed step hides what came after it.
     auto grown = [](uint64_t needed, uint64_t capacity) { return needed > capacity ? needed + needed / 4 : capacity; };
     const uint64_t next = grown(report.next_needed, lists_->next_capacity());

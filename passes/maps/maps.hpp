@@ -35,8 +35,8 @@ public:
     void record(engine::Recorder& recorder, const compute::Bsh& tree, const engine::Array<View>& views, const engine::Array<uint>& count,
                 uint32_t first);
 
-    // After the submission: whether the lists sufficed. If not they are longer now, or the batch is smaller, and all batches must be
-    // done again. Throws OutOfMemory when there is no way left.
+    // After the submission: whether the lists sufficed. If not they are longer now, or the batch is smaller, and this batch must be
+    // done again; a gather that was given lists().state() has left it out. Throws OutOfMemory when there is no way left.
     bool accept();
 
     const engine::Array<uint>& atlas() const { return atlas_; }
@@ -47,6 +47,7 @@ private:
     void make_lists(uint64_t next, uint64_t kept);
     void make_atlas();
     void halve();
+    uint64_t groups_guess(uint32_t views) const;
 
     engine::Device& device_;
     MapSettings settings_;

@@ -55,18 +55,16 @@ protected:
         for (const auto& [kind, use] : on.memory()) out.bytes_before += use.now;
         try {
             ViewMaps maps(on, settings, n, block * block);
-            for (bool fitted = false; !fitted;) {
-                fitted = true;
-                gather.clear(recorder);
-                for (uint32_t first = 0; first < n && fitted; first += maps.batch()) {
-                    EXPECT_EQ(maps.batch() % (block * block), 0u);
-                    const uint32_t batch = maps.batch();
-                    maps.record(recorder, tree, device_views, count, first);
-                    gather.record_maps(recorder, {gbuffer, device_vpls, count, block, 5}, first, batch, &maps.atlas(), settings.map_size, 0.5f);
-                    recorder.copy(maps.atlas(), all, std::min(batch, n - first) * words * sizeof(uint), 0, first * words * sizeof(uint));
-                    recorder.submit_and_wait();
-                    fitted = maps.accept();
-                }
+            gather.clear(recorder);
+            for (uint32_t first = 0; first < n;) {
+                EXPECT_EQ(maps.batch() % (block * block), 0u);
+                const uint32_t batch = maps.batch();
+                maps.record(recorder, tree, device_views, count, first);
+                gather.record_maps(recorder, {gbuffer, device_vpls, count, block, 5}, first, batch, &maps.atlas(), settings.map_size, 0.5f,
+                                   &maps.lists());
+                recorder.copy(maps.atlas(), all, std::min(batch, n - first) * words * sizeof(uint), 0, first * words * sizeof(uint));
+                recorder.submit_and_wait();
+                if (maps.accept()) first += batch;
             }
             out.counters = maps.take_counters();
             out.batch = maps.batch();
@@ -111,7 +109,7 @@ TEST_F(MapsTest, lists_grow_until_they_suffice) {
     const auto vpls = random_vpls(16);
     Outcome one_by_one;
     for (const Vpl& v : vpls) {
-        const Outcome one = run(device, {v}, {AppendMode::scan, 4, 0.05f});
+        const Outcome one = run(device, {v}, {AppendMode::scan, 2, 0.05f});
         EXPECT_EQ(one.counters.redone, 0u);
         one_by_one.atlas.insert(one_by_one.atlas.end(), one.atlas.begin(), one.atlas.end());
         one_by_one.counters.node_views += one.counters.node_views;
@@ -119,7 +117,7 @@ TEST_F(MapsTest, lists_grow_until_they_suffice) {
         one_by_one.counters.groups += one.counters.groups;
     }
     for (AppendMode mode : {AppendMode::scan, AppendMode::atomic}) {
-        const Outcome all = run(device, vpls, {mode, 4, 0.05f});
+        const Outcome all = run(device, vpls, {mode, 2, 0.05f});
         EXPECT_GT(all.counters.redone, 0u);
         EXPECT_EQ(all.counters.batches, 1u) << "there is memory for all";
         EXPECT_LE(all.counters.list_peak, all.counters.list_capacity);
