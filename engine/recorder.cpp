@@ -144,6 +144,24 @@ Recorder::Scope::~Scope() {
     recorder_.device_.end_label(recorder_.commands_);
 }
 
+double Recorder::warm_up() {
+    const Array<DispatchArgs> nothing(device_, "frame", "warm-up grid", 1);
+    const std::vector<char> zeros(device_.info().limits.at("maxPushConstantsSize"));
+    submit_and_wait();
+    const double start = now_ms();
+    fill(nothing, 0);
+    use(nothing, false);
+    synchronise();
+    for (const auto& [key, pipeline] : device_.pipelines()) {
+        vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.pipeline);
+        if (pipeline.push_constant_bytes)
+            vkCmdPushConstants(commands_, pipeline.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, (pipeline.push_constant_bytes + 3) & ~3u, zeros.data());
+        vkCmdDispatchIndirect(commands_, nothing.handle(), 0);
+    }
+    submit_and_wait();
+    return now_ms() - start;
+}
+
 void Recorder::submit_and_wait() {
     // What the device wrote becomes visible to the host, through mapped buffers.
     VkMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};

@@ -70,6 +70,10 @@ public:
     // Runs what was recorded, returns when it is done and the host may read mapped memory, and starts anew.
     void submit_and_wait();
 
+    // Dispatches no workgroups of every pipeline that exists, after what was recorded, and waits. Drivers that compile at the first
+    // dispatch (lavapipe: 20 to 700 ms a kernel) do it here, not inside the first frame. Milliseconds.
+    double warm_up();
+
     // Times of the scopes of all submissions so far, in order of their beginning; taking them forgets them.
     std::vector<PassTime> take_times() { return std::exchange(times_, {}); }
 

@@ -9,10 +9,12 @@ namespace myriad::passes {
 
 namespace {
 
-// Pixels in a block's side so that each gathers about `subset` of the VPLs.
+// Pixels in a block's side so that each gathers about `subset` of the VPLs. A power of two: interleaved sets of that many are fair
+// samples of the VPL sequence (passes/vpl).
 uint32_t block_for(uint32_t vpls, uint32_t subset) {
-    if (subset == 0 || subset >= vpls) return 1;
-    return std::min(uint32_t(std::ceil(std::sqrt(double(vpls) / subset))), 16u);
+    uint32_t block = 1;
+    while (subset > 0 && block < 16 && uint64_t(subset) * block * block < vpls) block *= 2;
+    return block;
 }
 
 double total_area(const scenes::Triangles& t) {
@@ -45,19 +47,29 @@ Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::T
     size_.bvh_nodes = bvh_.nodes();
 
     if (DirectPass::needed(lights_)) direct_.emplace(device, settings.width, settings.height);
-    if (lights_.power() == 0 || settings.vpls == 0 || triangles.triangles.empty()) return;
-    vpl_.emplace(device, settings.vpls);
-    vpl_->prepare(recorder_, geometry_, bvh_, lights_, settings.bounces, settings.seed);  // throws when no path fits
-    gather_.emplace(device, gather_visibility(settings.visibility), settings.width, settings.height);
-    if (settings.filter && block_ > 1) filter_.emplace(device, settings.width, settings.height);
-    if (settings.visibility != Visibility::manylods) return;
-    report("sampling the surface and sorting the samples", 0);
-    tree_.emplace(device, triangles.positions, triangles.triangles, settings.log2_samples, settings.seed);
-    size_.samples = tree_->leaves();
-    size_.bsh_blocks = tree_->blocks();
-    maps_.emplace(device, settings.maps, settings.vpls, block_ * block_);
+    if (lights_.power() > 0 && settings.vpls > 0 && !triangles.triangles.empty()) make_indirect(triangles);
+    report("compiling kernels", 0);
+    warm_up_ms_ = recorder_.warm_up();
+    if (!vpl_) return;
+    report("finding where light goes", 0);
+    vpl_->prepare(recorder_, geometry_, bvh_, lights_, settings.bounces, settings.seed);
+    if (!tree_) return;
     auto scope = recorder_.scope("refit");
     tree_->refit(recorder_, geometry_.positions(), geometry_.triangles());
+}
+
+void Frame::make_indirect(const scenes::Triangles& triangles) {
+    const FrameSettings& settings = settings_;
+    vpl_.emplace(device_, settings.vpls);
+    vpl_->sure_paths(lights_, settings.bounces);  // throws when not one path fits
+    gather_.emplace(device_, gather_visibility(settings.visibility), settings.width, settings.height);
+    if (settings.filter && block_ > 1) filter_.emplace(device_, settings.width, settings.height);
+    if (settings.visibility != Visibility::manylods) return;
+    report("sampling the surface and sorting the samples", 0);
+    tree_.emplace(device_, triangles.positions, triangles.triangles, settings.log2_samples, settings.seed);
+    size_.samples = tree_->leaves();
+    size_.bsh_blocks = tree_->blocks();
+    maps_.emplace(device_, settings.maps, settings.vpls, block_ * block_);
 }
 
 void Frame::report(const std::string& stage, double done) const {

@@ -75,9 +75,11 @@ public:
     const SceneSize& size() const { return size_; }
     const FrameCounters& counters() const { return counters_; }
     const std::vector<engine::PassTime>& times() const { return times_; }  // of the last frame
+    double warm_up_ms() const { return warm_up_ms_; }  // compiling kernels, at construction
 
 private:
-    void gather_indirect(float camera_pixel_angle);
+    void make_indirect(const scenes::Triangles& triangles);
+    void gather_indirect(float pixel_angle);
     void read_back_words();
     void report(const std::string& stage, double done) const;
 
@@ -103,6 +105,7 @@ private:
     SceneSize size_;
     FrameCounters counters_;
     std::vector<engine::PassTime> times_;
+    double warm_up_ms_ = 0;
 };
 
 }  // namespace myriad::passes

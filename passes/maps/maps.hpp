@@ -10,7 +10,7 @@ namespace myriad::passes {
 
 struct MapSettings {
     compute::AppendMode append = compute::AppendMode::scan;
-    uint32_t map_size = 64;   // texels a side of a half map
+    uint32_t map_size = 32;   // texels a side of a half map
     float epsilon = 2;        // texels
 };
 

@@ -29,7 +29,7 @@ void draw(View view, Sphere sphere, uint cone, uvec2 box, uint map) {
     const Splat s = splat_of(view, sphere, cone, box);
     const uint near = half_of(s.d);
     draw_half(s, near, map);
-    if (abs(s.d.x) <= s.radius) draw_half(s, 1u - near, map);  // crosses the equator
+    if (splat_in_both(s, push.map_size)) draw_half(s, 1u - near, map);
 }
 
 void main() {

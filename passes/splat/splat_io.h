@@ -53,14 +53,22 @@ MYRIAD_FN float splat_depth(Splat s, vec3 w) {
     return t > 0.0f && inside ? t : -1.0f;
 }
 
+// Whether the node may cover texels of the half where its centre is not: its sphere crosses the equator, or comes as near as
+// the rim's texels reach over it. Their middles are directions of the other half, by up to half a diagonal, but directions
+// of this half fall in them, and would see nothing there.
+MYRIAD_FN bool splat_in_both(Splat s, uint size) {
+    return abs(s.d.x) <= s.radius + 1.4143f / float(size) * sqrt(dot(s.d, s.d));
+}
+
 // The texels of one axis whose middles may lie in [middle - radius, middle + radius]: first, and one past the last.
 MYRIAD_FN uint splat_first(float u, uint size) {
     const float t = (u + 1.0f) * 0.5f * float(size) - 0.5f;
-    return t > 0.0f ? min(uint(t) + (float(uint(t)) < t ? 1u : 0u), size) : 0u;
+    const uint x = uint(clamp(t, 0.0f, float(size)));  // clamped first: beyond 2^32 there is no conversion
+    return min(x + (float(x) < t ? 1u : 0u), size);
 }
 MYRIAD_FN uint splat_end(float u, uint size) {
     const float t = (u + 1.0f) * 0.5f * float(size) + 0.5f;
-    return t > 0.0f ? min(uint(t), size) : 0u;
+    return uint(clamp(t, 0.0f, float(size)));
 }
 MYRIAD_END
 

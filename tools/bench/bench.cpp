@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <iostream>
+#include <memory>
 
 #include <CLI/CLI.hpp>
 

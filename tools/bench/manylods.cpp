@@ -1,6 +1,6 @@
 // `myriad bench manylods`: cut and splat of VPL views. Rows: the device's append lists in both modes, a depth-first walk a view on the
 // device, and both algorithms native on the host with two threads or as many as there are. All cuts are compared before anything is
-// timed; ms is cut + splat for the device, cut alone for the native rows.
+// timed; ms is cut + splat for the device's lists, the cut alone for the others.
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -75,16 +75,13 @@ struct Experiment {
         passes::MapCounters counters;
         for (uint32_t run = 0; run <= options.repeats; ++run) {  // run 0 warms up, lets the lists grow, and is compared
             CutHash hash;
-            for (bool fitted = false; !fitted;) {
-                fitted = true;
-                recorder.take_times();
-                hash = {};
-                for (uint32_t first = 0; first < count && fitted; first += maps.batch()) {
-                    maps.record(recorder, tree, views, on_device, first);
-                    recorder.submit_and_wait();
-                    fitted = maps.accept();
-                    if (run == 0 && fitted) hash.add(engine::download(device, maps.lists().kept(), maps.lists().report().kept));
-                }
+            for (uint32_t first = 0; first < count;) {
+                const uint32_t batch = maps.batch();
+                maps.record(recorder, tree, views, on_device, first);
+                recorder.submit_and_wait();
+                if (!maps.accept()) continue;
+                if (run == 0) hash.add(engine::download(device, maps.lists().kept(), maps.lists().report().kept));
+                first += batch;
             }
             counters = maps.take_counters();
             double total = 0;
@@ -134,30 +131,27 @@ struct Experiment {
         sink(r);
     }
 
-    template <class Cut>
-    NativeCut native_row(const char* technique, uint32_t count, CutHash* hash, Cut cut) {
+    // `run` is one of NativeCuts' two. The first sets the hash that everything after it must equal.
+    template <class Run>
+    void native_row(const char* technique, uint32_t count, NativeCuts& cuts, CutHash& hash, Run run) {
         BenchRow r = row(technique, count);
-        const unsigned threads = std::max(1u, std::thread::hardware_concurrency());
         const std::vector<View> some(host_views.begin(), host_views.begin() + count);
-        r.settings["threads"] = threads;
-        NativeCut last;
-        for (uint32_t run = 0; run <= options.repeats; ++run) {
+        r.settings["threads"] = cuts.threads();
+        for (uint32_t i = 0; i <= options.repeats; ++i) {  // run 0 warms up: memory is there afterwards
             const auto start = std::chrono::steady_clock::now();
-            NativeCut now = cut(native, some, options.epsilon, options.map_size, threads);
-            const double ms = ms_since(start);
-            if (run > 0) r.ms.ms.push_back(ms);
-            last = std::move(now);
+            (cuts.*run)(native, some, options.epsilon, options.map_size);
+            if (i > 0) r.ms.ms.push_back(ms_since(start));
         }
         r.stages["cut"] = r.ms;
         CutHash mine;
-        mine.add(last.groups);
-        if (hash->node_views && !(*hash == mine)) throw Error(Error::Kind::check_failed, "the native cuts differ");
-        *hash = mine;
-        r.counters = {{"node_views", double(last.node_views)}, {"cut", double(mine.node_views)}, {"groups", double(last.groups.size())},
-                      {"Mnode_views/s", double(last.node_views) / r.ms.median() / 1000}};
-        r.bytes = {{"pairs", last.peak_bytes}, {"atlas", 0}};
+        uint64_t groups = 0;
+        for (unsigned t = 0; t < cuts.threads(); ++t) mine.add(cuts.groups(t)), groups += cuts.groups(t).size();
+        if (hash.node_views && !(hash == mine)) throw Error(Error::Kind::check_failed, "the native cuts differ");
+        hash = mine;
+        r.counters = {{"node_views", double(cuts.node_views())}, {"cut", double(mine.node_views)}, {"groups", double(groups)},
+                      {"Mnode_views/s", double(cuts.node_views()) / r.ms.median() / 1000}};
+        r.bytes = {{"pairs", cuts.bytes()}, {"atlas", 0}};
         sink(r);
-        return last;
     }
 
     void fill_bytes(BenchRow& r) const {
@@ -200,11 +194,14 @@ void bench_manylods(engine::Device& device, const BenchOptions& options, const R
                           engine::upload(device, "vpls", "bench views", spread), spread, std::move(native)};
     for (uint32_t count : counts) {
         CutHash hash;
-        const NativeCut cut = experiment.native_row("native-lists", count, &hash, native_lists);
-        experiment.native_row("native-depth-first", count, &hash, native_depth_first);
+        NativeCuts cuts(std::max(1u, std::thread::hardware_concurrency()));
+        experiment.native_row("native-lists", count, cuts, hash, &NativeCuts::lists);
+        experiment.native_row("native-depth-first", count, cuts, hash, &NativeCuts::depth_first);
+        uint64_t groups = 0;
+        for (unsigned t = 0; t < cuts.threads(); ++t) groups += cuts.groups(t).size();
         experiment.device_lists(count, compute::AppendMode::scan, hash);
         experiment.device_lists(count, compute::AppendMode::atomic, hash);
-        experiment.device_walk(count, hash, cut.groups.size(), cut.node_views);
+        experiment.device_walk(count, hash, groups, cuts.node_views());
     }
 }
 

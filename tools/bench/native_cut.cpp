@@ -54,107 +54,91 @@ uint children(const NativeTree& tree, uint block) {
     return n;
 }
 
-// Runs work(thread, begin, end) over [0, n) cut in even parts.
-template <class Work>
-void parallel(unsigned threads, size_t n, Work work) {
-    std::vector<std::thread> pool;
-    for (unsigned t = 1; t < threads; ++t) pool.emplace_back([=] { work(t, n * t / threads, n * (t + 1) / threads); });
-    work(0, 0, n / threads);
-    for (std::thread& t : pool) t.join();
-}
-
-// What one thread appends to. Raw growth by doubling; never shrinks, so that a level costs no allocation after the first frame.
-struct Lists {
-    std::vector<uvec2> next, kept;
-    uint64_t node_views = 0;
-};
-
-inline void keep(Lists& out, uint block, uint view, uint found) {
-    if (found & 0xffffu) out.kept.push_back(cut_pack(block, view, found & 0xffffu));
-}
-
 uint root_of(const NativeTree& tree, const View& view, float epsilon, uint map_size) {
     return classify_child(view, tree.frames[tree.blocks], tree.spheres[size_t(tree.blocks) * 8], bsh_is_leaf(8 * tree.blocks, tree.leaves),
                           epsilon, map_size);
-}
-
-NativeCut gather_lists(std::vector<Lists>& lists) {
-    NativeCut cut;
-    for (Lists& l : lists) {
-        cut.node_views += l.node_views;
-        cut.peak_bytes += l.kept.capacity() * sizeof(uvec2) + l.next.capacity() * sizeof(uvec2);
-        cut.groups.insert(cut.groups.end(), l.kept.begin(), l.kept.end());
-    }
-    return cut;
 }
 
 }  // namespace
 
 bool native_available() { return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"); }
 
-NativeCut native_lists(const NativeTree& tree, const std::vector<View>& views, float epsilon, uint map_size, unsigned threads) {
-    std::vector<Lists> lists(threads);
-    std::vector<std::vector<uvec2>> active(threads);
-    parallel(threads, views.size(), [&](unsigned t, size_t begin, size_t end) {
-        for (size_t v = begin; v < end; ++v) {
-            const uint root = root_of(tree, views[v], epsilon, map_size);
-            keep(lists[t], tree.blocks, uint(v), root);
-            if (root >> 16) lists[t].next.push_back({tree.blocks - 1, uint(v)});
-        }
-        lists[t].node_views += end - begin;
-    });
-    const uint root_children = children(tree, tree.blocks - 1);
-    for (uint level = 0;; ++level) {
-        // Each thread goes on with its own list: views are dealt out evenly, and nothing has to be copied together.
-        size_t left = 0;
-        for (unsigned t = 0; t < threads; ++t) {
-            active[t].swap(lists[t].next);
-            lists[t].next.clear();
-            left += active[t].size();
-        }
-        if (left == 0) break;
-        parallel(threads, threads, [&](unsigned, size_t begin, size_t end) {
-            for (size_t t = begin; t < end; ++t) {
-                Lists& out = lists[t];
-                for (const uvec2& pair : active[t]) {
-                    const uint found = open_block(tree, pair.x, views[pair.y], epsilon, float(map_size));
-                    keep(out, pair.x, pair.y, found);
-                    for (uint open = found >> 16; open; open &= open - 1)
-                        out.next.push_back({8 * pair.x + uint(__builtin_ctz(open)) - tree.leaves, pair.y});
-                }
-                out.node_views += active[t].size() * (level == 0 ? root_children : 8);
-            }
-        });
-    }
-    NativeCut cut = gather_lists(lists);
-    for (auto& a : active) cut.peak_bytes += a.capacity() * sizeof(uvec2);
-    return cut;
+uint64_t NativeCuts::node_views() const {
+    uint64_t sum = 0;
+    for (const Lists& l : lists_) sum += l.node_views;
+    return sum;
 }
 
-NativeCut native_depth_first(const NativeTree& tree, const std::vector<View>& views, float epsilon, uint map_size, unsigned threads) {
-    std::vector<Lists> lists(threads);
+uint64_t NativeCuts::bytes() const {
+    uint64_t sum = 0;
+    for (const Lists& l : lists_) sum += (l.items.capacity() + l.next.capacity() + l.kept.capacity()) * sizeof(uvec2);
+    return sum;
+}
+
+// Runs work(lists, begin, end) over the views, a thread for each set of lists.
+template <class Work>
+void NativeCuts::parallel(size_t views, Work work) {
+    std::vector<std::thread> pool;
+    const size_t n = lists_.size();
+    auto part = [&](size_t t) {
+        lists_[t].kept.clear();
+        lists_[t].node_views = 0;
+        work(lists_[t], views * t / n, views * (t + 1) / n);
+    };
+    for (size_t t = 1; t < n; ++t) pool.emplace_back(part, t);
+    part(0);
+    for (std::thread& t : pool) t.join();
+}
+
+inline void NativeCuts::keep(Lists& out, uint block, uint view, uint found) {
+    if (found & 0xffffu) out.kept.push_back(cut_pack(block, view, found & 0xffffu));
+}
+
+void NativeCuts::lists(const NativeTree& tree, const std::vector<View>& views, float epsilon, uint map_size) {
     const uint root_children = children(tree, tree.blocks - 1);
-    parallel(threads, views.size(), [&](unsigned t, size_t begin, size_t end) {
-        Lists& out = lists[t];
-        std::vector<uint> stack;
+    parallel(views.size(), [&](Lists& out, size_t begin, size_t end) {
+        out.next.clear();
+        for (size_t v = begin; v < end; ++v) {
+            const uint root = root_of(tree, views[v], epsilon, map_size);
+            keep(out, tree.blocks, uint(v), root);
+            if (root >> 16) out.next.push_back({tree.blocks - 1, uint(v)});
+        }
+        out.node_views += end - begin;
+        for (uint work = root_children; !out.next.empty(); work = 8) {
+            out.items.swap(out.next);
+            out.next.clear();
+            for (const uvec2& pair : out.items) {
+                const uint found = open_block(tree, pair.x, views[pair.y], epsilon, float(map_size));
+                keep(out, pair.x, pair.y, found);
+                for (uint open = found >> 16; open; open &= open - 1)
+                    out.next.push_back({8 * pair.x + uint(__builtin_ctz(open)) - tree.leaves, pair.y});
+            }
+            out.node_views += out.items.size() * work;
+        }
+    });
+}
+
+void NativeCuts::depth_first(const NativeTree& tree, const std::vector<View>& views, float epsilon, uint map_size) {
+    const uint root_children = children(tree, tree.blocks - 1);
+    parallel(views.size(), [&](Lists& out, size_t begin, size_t end) {
         for (size_t v = begin; v < end; ++v) {
             const View view = views[v];
             const uint root = root_of(tree, view, epsilon, map_size);
             ++out.node_views;
             keep(out, tree.blocks, uint(v), root);
             if (!(root >> 16)) continue;
-            stack.assign(1, tree.blocks - 1);
-            while (!stack.empty()) {
-                const uint block = stack.back();
-                stack.pop_back();
+            out.stack.assign(1, tree.blocks - 1);
+            while (!out.stack.empty()) {
+                const uint block = out.stack.back();
+                out.stack.pop_back();
                 const uint found = open_block(tree, block, view, epsilon, float(map_size));
                 out.node_views += block == tree.blocks - 1 ? root_children : 8;
                 keep(out, block, uint(v), found);
-                for (uint open = found >> 16; open; open &= open - 1) stack.push_back(8 * block + uint(__builtin_ctz(open)) - tree.leaves);
+                for (uint open = found >> 16; open; open &= open - 1)
+                    out.stack.push_back(8 * block + uint(__builtin_ctz(open)) - tree.leaves);
             }
         }
     });
-    return gather_lists(lists);
 }
 
 }  // namespace myriad::tools

@@ -21,19 +21,35 @@ struct NativeTree {
     uint leaves = 0, blocks = 0;
 };
 
-struct NativeCut {
-    std::vector<uvec2> groups;     // compute/manylods/cut_io.h; order depends on the number of threads
-    uint64_t node_views = 0;       // tested
-    uint64_t peak_bytes = 0;       // of lists
-};
-
 // False where this processor cannot run what this file was compiled for.
 bool native_available();
 
-// Level by level, with an active list and a list of groups a thread.
-NativeCut native_lists(const NativeTree& tree, const std::vector<View>& views, float epsilon, uint map_size, unsigned threads);
+// Cuts by several threads; views are dealt out evenly. Lists keep their memory from run to run, as the device's do.
+class NativeCuts {
+public:
+    explicit NativeCuts(unsigned threads) : lists_(threads) {}
 
-// One depth-first walk a view.
-NativeCut native_depth_first(const NativeTree& tree, const std::vector<View>& views, float epsilon, uint map_size, unsigned threads);
+    // Level by level, with an active list and a list of groups a thread.
+    void lists(const NativeTree& tree, const std::vector<View>& views, float epsilon, uint map_size);
+    // One depth-first walk a view.
+    void depth_first(const NativeTree& tree, const std::vector<View>& views, float epsilon, uint map_size);
+
+    unsigned threads() const { return unsigned(lists_.size()); }
+    // Of the last run: groups (compute/manylods/cut_io.h) of one thread, node-views tested, and the bytes of all lists.
+    const std::vector<uvec2>& groups(unsigned thread) const { return lists_[thread].kept; }
+    uint64_t node_views() const;
+    uint64_t bytes() const;
+
+private:
+    struct alignas(64) Lists {
+        std::vector<uvec2> items, next, kept;
+        std::vector<uint> stack;
+        uint64_t node_views = 0;
+    };
+    template <class Work> void parallel(size_t views, Work work);
+    void keep(Lists& out, uint block, uint view, uint found);
+
+    std::vector<Lists> lists_;
+};
 
 }  // namespace myriad::tools
