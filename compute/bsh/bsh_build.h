@@ -152,15 +152,8 @@ MYRIAD_FN vec3 bsh_position(vec3 a, vec3 b, vec3 c, float u, float v) { return (
 // ---- Cones of lines ----
 
 MYRIAD_FN uint bsh_cone_pack_axis(vec3 d) {
-    const float sum = abs(d.x) + abs(d.y) + abs(d.z);
-    float u = d.x / sum;
-    float v = d.y / sum;
-    if (d.z < 0.0f) {
-        const float folded = (1.0f - abs(v)) * sign_not_zero(u);
-        v = (1.0f - abs(u)) * sign_not_zero(v);
-        u = folded;
-    }
-    return uint(int(floor(u * 2047.0f + 0.5f)) + 0x800) | (uint(int(floor(v * 2047.0f + 0.5f)) + 0x800) << 12);
+    const vec2 p = oct_fold(d);
+    return uint(int(floor(p.x * 2047.0f + 0.5f)) + 0x800) | (uint(int(floor(p.y * 2047.0f + 0.5f)) + 0x800) << 12);
 }
 
 // The least cone around `axis` that holds angles of cosine `least_cos`, less what rounding may have cost.

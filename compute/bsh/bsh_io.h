@@ -2,7 +2,7 @@
 //
 // The paper's tree is a complete binary tree over n = 2^d samples (ManyLoDs 4.1). It is stored with three of its levels
 // taken at once, as an 8-ary tree: opening a node reads one block, which holds the bounds of its eight children in
-// 16 + 8 * 8 bytes (shared/lavapipe: the price is words touched per lane; the paper, section 7: any arity works).
+// 16 + 8 * 8 bytes (the price is words touched per lane; ManyLoDs 7: any arity works).
 //
 //   slot     a node, seen as a child: slot s belongs to block s / 8. Leaves are slots [0, n), in tree order.
 //   block    the children of one inner node: slots [8 b, 8 b + 8). The inner node in slot s >= n owns block s - n, so
@@ -18,19 +18,13 @@
 #define MYRIAD_COMPUTE_BSH_IO_H
 
 #include "compute/common/packing.h"
+#include "compute/surface_sampling/surface_sample.h"
 #include "compute/views/view_io.h"
 
 MYRIAD_BEGIN
 const uint bsh_arity_log2 = 3u;
 const uint bsh_arity = 8u;
 const uint bsh_absent = 0xffffu;     // radius code of a slot without a node
-
-// One sample of the surface; its position follows the triangle when it deforms (ManyLoDs 4.1).
-struct SurfaceSample {
-    uint triangle;
-    float u, v;                      // position = (1 - u - v) p0 + u p1 + v p2
-};
-MYRIAD_ARRAY(SurfaceSamples, SurfaceSample, 4)
 
 // What a kernel needs to walk the tree. All arrays are indexed by block or by slot as said.
 struct BshRef {
@@ -66,20 +60,9 @@ MYRIAD_FN uint bsh_radius_code(float r) { return (floatBitsToUint(r) + 0x7fffu) 
 const uint bsh_cone_all = 0xff800800u;
 
 MYRIAD_FN vec3 bsh_cone_axis(uint cone) {
-    const uint x = cone & 0xfffu;
-    const uint y = (cone >> 12) & 0xfffu;
-    // Re-uses the 16-bit map: 12 bits centred in its range.
-    const float u = float(int(x) - 0x800) / 2047.0f;
-    const float v = float(int(y) - 0x800) / 2047.0f;
-    const float z = 1.0f - abs(u) - abs(v);
-    float a = u;
-    float b = v;
-    if (z < 0.0f) {
-        a = (1.0f - abs(v)) * sign_not_zero(u);
-        b = (1.0f - abs(u)) * sign_not_zero(v);
-    }
-    return vec3(a, b, z) / sqrt(a * a + b * b + z * z);
+    return oct_unfold(float(int(cone & 0xfffu) - 0x800) / 2047.0f, float(int((cone >> 12) & 0xfffu) - 0x800) / 2047.0f);
 }
+
 // What a node's surface fills of its sphere: the box around its samples' patches, 10 bits a side in units of the radius,
 // rounded outward, relative to the decoded centre. Spheres decide what is drawn; boxes say how far it reaches, because a
 // sphere around a square patch of wall sticks out over its neighbours, and eight levels of that darken every map.

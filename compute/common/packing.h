@@ -7,27 +7,15 @@
 MYRIAD_BEGIN
 MYRIAD_FN float sign_not_zero(float v) { return v < 0.0f ? -1.0f : 1.0f; }
 
-// Octahedral map of unit vectors to the square [-1, 1]^2 (Cigolle et al. 2014), 16 bits a coordinate. The largest error
-// is about 4e-5 rad. A vector of zero length maps to +z.
-MYRIAD_FN uint pack_direction(vec3 d) {
+// Octahedral map of directions to the square [-1, 1]^2 (Cigolle et al. 2014), and back to unit vectors. The vector must not be zero.
+MYRIAD_FN vec2 oct_fold(vec3 d) {
     const float sum = abs(d.x) + abs(d.y) + abs(d.z);
-    if (!(sum > 0.0f)) return 0x80008000u;
-    float u = d.x / sum;
-    float v = d.y / sum;
-    if (d.z < 0.0f) {
-        const float folded = (1.0f - abs(v)) * sign_not_zero(u);
-        v = (1.0f - abs(u)) * sign_not_zero(v);
-        u = folded;
-    }
-    // 32767 steps each side of 0x8000, so that the axes are exact.
-    const uint x = uint(int(floor(u * 32767.0f + 0.5f)) + 0x8000);
-    const uint y = uint(int(floor(v * 32767.0f + 0.5f)) + 0x8000);
-    return x | (y << 16);
+    const float u = d.x / sum;
+    const float v = d.y / sum;
+    if (d.z >= 0.0f) return vec2(u, v);
+    return vec2((1.0f - abs(v)) * sign_not_zero(u), (1.0f - abs(u)) * sign_not_zero(v));
 }
-
-MYRIAD_FN vec3 unpack_direction(uint packed) {
-    const float u = float(int(packed & 0xffffu) - 0x8000) / 32767.0f;
-    const float v = float(int(packed >> 16) - 0x8000) / 32767.0f;
+MYRIAD_FN vec3 oct_unfold(float u, float v) {
     const float z = 1.0f - abs(u) - abs(v);
     float x = u;
     float y = v;
@@ -36,6 +24,17 @@ MYRIAD_FN vec3 unpack_direction(uint packed) {
         y = (1.0f - abs(u)) * sign_not_zero(v);
     }
     return vec3(x, y, z) / sqrt(x * x + y * y + z * z);
+}
+
+// A direction in 16 + 16 bits, 32767 steps each side of 0x8000, so that the axes are exact; the largest error is about 4e-5 rad.
+// A vector of zero length maps to +z.
+MYRIAD_FN uint pack_direction(vec3 d) {
+    if (!(abs(d.x) + abs(d.y) + abs(d.z) > 0.0f)) return 0x80008000u;
+    const vec2 p = oct_fold(d);
+    return uint(int(floor(p.x * 32767.0f + 0.5f)) + 0x8000) | (uint(int(floor(p.y * 32767.0f + 0.5f)) + 0x8000) << 16);
+}
+MYRIAD_FN vec3 unpack_direction(uint packed) {
+    return oct_unfold(float(int(packed & 0xffffu) - 0x8000) / 32767.0f, float(int(packed >> 16) - 0x8000) / 32767.0f);
 }
 MYRIAD_END
 

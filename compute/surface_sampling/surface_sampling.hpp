@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "compute/bsh/bsh_io.h"
+#include "compute/surface_sampling/surface_sample.h"
 
 namespace myriad::compute {
 

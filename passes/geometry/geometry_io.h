@@ -14,7 +14,7 @@ struct TextureRef {
     uint wrap;           // of u, and of v << 2
 };
 
-// Diffuse only: what scenes::Material says of roughness, and the specular lobe, come with glossy VPLs (issue 4).
+// Diffuse only: what scenes::Material says of roughness, and the specular lobe, are not read yet.
 struct Material {
     vec4 base_color;
     vec3 emission;       // radiance

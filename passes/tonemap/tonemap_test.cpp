@@ -33,7 +33,7 @@ protected:
         }
         return out;
     }
-    // Either neighbour is right where rounding is a tie to within what the device's pow errs (shared/lavapipe, trap 5).
+    // Either neighbour is right where rounding is a tie to within what the device's pow errs.
     static size_t differing(const std::vector<vec4>& radiance, float exposure, const std::vector<uint>& got) {
         size_t wrong = 0;
         for (size_t i = 0; i < radiance.size(); ++i)

@@ -61,7 +61,13 @@ uint root_of(const NativeTree& tree, const View& view, float epsilon, uint map_s
 
 }  // namespace
 
-bool native_available() { return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"); }
+bool native_available() {
+#ifdef __x86_64__
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+#else
+    return true;
+#endif
+}
 
 uint64_t NativeCuts::node_views() const {
     uint64_t sum = 0;
