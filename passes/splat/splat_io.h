@@ -13,6 +13,10 @@ const uint atlas_nothing = 0x7f800000u;  // +infinity: no surface in this texel
 // normal to 1/2047, so a thin box may lie beside its own plane by their sum and more at its rim.
 const float splat_margin = 1.0f / 128.0f;
 
+// A view this near to a node's plane, in radii, sees the node edge-on: it covers nothing. A VPL stands a hair off its own wall, and
+// the wall's node, whose normal is good to 1/1400 and whose centre to 1/16384, must not be found in front of it.
+const float splat_edge_on = 1.0f / 256.0f;
+
 struct SplatPush {
     Uint2s groups;
     Uints count;
@@ -27,7 +31,7 @@ struct Splat {
     vec3 d;          // centre - view
     float radius;
     vec3 normal;
-    float height;    // d . normal: how far the view lies off the node's plane
+    float height;    // d . normal: how far the view lies off the node's plane; 0: it covers nothing
     vec3 low, high;  // the box, around the centre
 };
 
@@ -38,6 +42,7 @@ MYRIAD_FN Splat splat_of(View view, Sphere sphere, uint cone, uvec2 box_code) {
     s.normal = bsh_cone_axis(cone);
     if ((cone >> 24) == 255u) s.normal = s.d / sqrt(dot(s.d, s.d));  // no normal to speak of: face the view
     s.height = dot(s.d, s.normal);
+    if (abs(s.height) <= splat_edge_on * s.radius) s.height = 0.0f;
     const BshBox box = bsh_decode_box(box_code, sphere.radius);
     const float margin = splat_margin * sphere.radius;
     s.low = box.low - margin;

@@ -1,0 +1,224 @@
+// Small images that must not change unless someone says so: scene file or built-in, whole frame, against goldens/*.exr.
+//
+// After a change that is meant to be seen, look at the difference images (build folder, tests/regression), then
+//     MYRIAD_BLESS=1 build/bin/myriad_frame_tests --gtest_filter='Regression.*'
+// writes the goldens anew and says how far each moved; the new files are part of the change and are reviewed with it.
+#include <cmath>
+#include <filesystem>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/testing.hpp"
+#include "passes/frame.hpp"
+#include "tools/exr.hpp"
+#include "tools/metrics.hpp"
+#include "tools/output_file.hpp"
+#include "tools/render_image.hpp"
+#include "tools/temp_folder.hpp"
+
+namespace myriad::tests {
+namespace {
+
+using nlohmann::json;
+using passes::Visibility;
+using tools::Image, tools::Metrics, tools::TempFolder, tools::contains;
+using Path = std::filesystem::path;
+
+// Images are compared as goldens are stored, in halves, so on one driver nothing may differ at all; nor did anything between Mesa
+// 22.3.6 and 25.0.7 when this was written. Devices may round 1/sqrt, pow and contracted sums in other ways: pixels on edges then see
+// another triangle, a few look-ups another texel. The limits leave room for that, and are a tenth of what 3 % of brightness or a wrong
+// 8 x 8 tile make (the negative tests below).
+constexpr double most_rel_mse = 5e-5;
+constexpr double most_failing = 0.004;   // share of pixels off by more than
+constexpr double tolerance = 0.02;       // of the mean of the golden
+
+struct Verdict {
+    std::string failure;  // empty: it passed
+    Metrics metrics;
+};
+
+double mean(const Image& image) {
+    double sum = 0;
+    const Image::Rgb c = *image.rgb();
+    for (const auto& plane : {c.r, c.g, c.b})
+        for (float v : plane) sum += v;
+    return sum / (3 * double(image.pixels()));
+}
+
+std::string bless_command() { return "MYRIAD_BLESS=1 " + std::filesystem::read_symlink("/proc/self/exe").string() + " --gtest_filter='Regression.*'"; }
+
+// Leaves the image, the difference and the numbers in `out` when it fails.
+Verdict judge(const Path& golden, const Image& image, const Path& out) {
+    std::filesystem::create_directories(out);
+    const std::string stem = (out / golden.stem()).string();
+    tools::write_exr(stem + ".test.exr", image);
+    if (!std::filesystem::exists(golden))
+        return {"there is no " + golden.string() + "; look at " + stem + ".test.exr, and if it is right: " + bless_command(), {}};
+    const Image expected = tools::read_exr(golden), test = tools::read_exr(stem + ".test.exr");
+    if (expected.width != test.width || expected.height != test.height) return {golden.string() + " has another size; " + bless_command(), {}};
+    const Metrics m = tools::measure(expected, test, tolerance * mean(expected));
+    if (m.finite() && m.rel_mse <= most_rel_mse && m.failing <= most_failing) {
+        std::filesystem::remove(stem + ".test.exr");
+        return {"", m};
+    }
+    tools::write_exr(stem + ".difference.exr", tools::absolute_difference(expected, test), tools::ExrColour::full);
+    json numbers = {{"golden", golden.string()}, {"golden_driver", expected.metadata.count("driver") ? expected.metadata.at("driver") : "?"},
+                    {"limits", {{"relMSE", most_rel_mse}, {"failing", most_failing}}}};
+    for (const auto& name : tools::metric_names()) numbers["metrics"][name.name] = m.*name.value;
+    tools::write_text(stem + ".json", numbers.dump(2) + "\n");
+    return {golden.filename().string() + ": relMSE " + std::to_string(m.rel_mse) + ", failing " + std::to_string(m.failing) + ", not finite " +
+                std::to_string(m.test.total()) + "; see " + stem + ".difference.exr and .json",
+            m};
+}
+
+// A court with two boxes, one of them turned and half sunk, a lamp and a point light: transforms, shared meshes, indices, emission
+// and its strength, lights and a camera, as a file.
+void write_court(const Path& path) {
+    std::string bin;
+    json doc = {{"asset", {{"version", "2.0"}}}, {"scene", 0}, {"extensionsUsed", {"KHR_lights_punctual", "KHR_materials_emissive_strength"}}};
+    const auto accessor = [&](const auto& values, int component, const char* type, size_t count, const json& more) {
+        const size_t bytes = values.size() * sizeof(values[0]);
+        doc["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", bin.size()}, {"byteLength", bytes}});
+        bin.append(reinterpret_cast<const char*>(values.data()), bytes);
+        json a = {{"bufferView", doc["bufferViews"].size() - 1}, {"componentType", component}, {"type", type}, {"count", count}};
+        a.update(more);
+        doc["accessors"].push_back(a);
+        return doc["accessors"].size() - 1;
+    };
+    // The cube [-1, 1]^3, eight vertices.
+    std::vector<float> corners;
+    for (int i = 0; i < 8; ++i)
+        for (int axis = 0; axis < 3; ++axis) corners.push_back(i >> axis & 1 ? 1.0f : -1.0f);
+    std::vector<uint32_t> out = {0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6}, in(out.rbegin(), out.rend());
+    const auto position = accessor(corners, 5126, "VEC3", 8, {{"min", {-1, -1, -1}}, {"max", {1, 1, 1}}});
+    const auto outside = accessor(out, 5125, "SCALAR", 36, json::object()), inside = accessor(in, 5125, "SCALAR", 36, json::object());
+    const auto material = [&](json color, json more) {
+        json m = {{"pbrMetallicRoughness", {{"baseColorFactor", color}, {"metallicFactor", 0}}}};
+        m.update(more);
+        doc["materials"].push_back(m);
+    };
+    material({0.7, 0.7, 0.65, 1}, json::object());
+    material({0.2, 0.3, 0.7, 1}, json::object());
+    material({0, 0, 0, 1}, {{"emissiveFactor", {1, 0.8, 0.5}}, {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 12}}}}}});
+    for (const auto& [indices, m] : {std::pair{inside, 0}, {outside, 1}, {outside, 2}})
+        doc["meshes"].push_back({{"primitives", {{{"attributes", {{"POSITION", position}}}, {"indices", indices}, {"material", m}}}}});
+    doc["nodes"] = {{{"mesh", 0}, {"scale", {3, 2, 3}}},
+                    {{"mesh", 1}, {"translation", {-1, -1.2, -1}}, {"scale", {0.6, 0.8, 0.6}}, {"rotation", {0, 0.2588190, 0, 0.9659258}}},
+                    {{"mesh", 1}, {"translation", {1.1, -1.8, 0.2}}, {"scale", {0.7, 0.7, 0.7}}, {"rotation", {0.3, 0.2, 0.1, 0.9273618}}},
+                    {{"mesh", 2}, {"translation", {0, 1.95, -1}}, {"scale", {0.5, 0.02, 0.5}}},
+                    {{"camera", 0}, {"translation", {0, 0.2, 2.8}}},
+                    {{"translation", {2, 1, 1.5}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}}};
+    doc["scenes"] = {{{"nodes", {0, 1, 2, 3, 4, 5}}}};
+    doc["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.9}, {"znear", 0.01}}}}};
+    doc["extensions"] = {{"KHR_lights_punctual", {{"lights", {{{"type", "point"}, {"color", {0.4, 0.7, 1}}, {"intensity", 6}}}}}}};
+    doc["buffers"] = {{{"byteLength", bin.size()}}};
+
+    std::string text = doc.dump();
+    text.resize((text.size() + 3) / 4 * 4, ' ');
+    std::string file;
+    const auto word = [&](uint32_t v) { file.append(reinterpret_cast<const char*>(&v), 4); };
+    word(0x46546c67), word(2), word(uint32_t(28 + text.size() + bin.size()));
+    word(uint32_t(text.size())), word(0x4e4f534a), file += text;
+    word(uint32_t(bin.size())), word(0x004e4942), file += bin;
+    tools::put(path, file);
+}
+
+class Regression : public engine::DeviceTest {
+protected:
+    Image render(const std::string& source, Visibility visibility) {
+        scenes::Scene scene = scenes::load(source);
+        const scenes::Triangles triangles = scenes::flatten(scene);
+        EXPECT_TRUE(scene.warnings.empty()) << scene.warnings[0];
+        passes::FrameSettings s;
+        s.width = 96, s.height = 64;
+        s.vpls = 256, s.subset = 64, s.bounces = 2;
+        s.log2_samples = 15;
+        s.maps.map_size = 32;
+        s.visibility = visibility;
+        passes::Frame frame(device, scene, triangles, s);
+        frame.render(scenes::pick_camera(scene, triangles, ""));
+        Image image = tools::read_image(device, frame, {});
+        image.metadata = {{"scene", std::filesystem::path(source).filename()}, {"device", device.info().name},
+                          {"driver", device.info().driver + " " + device.info().driver_version}};
+        return image;
+    }
+
+    void check(const std::string& name, const std::string& source, Visibility visibility) {
+        const Image image = render(source, visibility);
+        const Path golden = Path(MYRIAD_GOLDENS) / (name + ".exr");
+        if (const char* bless = std::getenv("MYRIAD_BLESS"); bless && bless == std::string("1")) {
+            const std::string was = std::filesystem::exists(golden) ? std::to_string(tools::measure(tools::read_exr(golden), image, 0).rel_mse) : "there was none";
+            tools::write_exr(golden, image);
+            EXPECT_LT(std::filesystem::file_size(golden), 60000u);
+            std::printf("blessed %s by %s; relMSE to the one before: %s\n", golden.c_str(), image.metadata.at("driver").c_str(), was.c_str());
+            GTEST_SKIP() << "blessed " << golden << ", not compared";
+        }
+        const Verdict v = judge(golden, image, MYRIAD_REGRESSION_OUT);
+        EXPECT_EQ(v.failure, "");
+        RecordProperty("relMSE", std::to_string(v.metrics.rel_mse));
+        std::printf("%s: relMSE %.2g, failing %.4f\n", name.c_str(), v.metrics.rel_mse, v.metrics.failing);
+    }
+};
+
+TEST_F(Regression, cornell_manylods) { check("cornell_manylods", "builtin:cornell", Visibility::manylods); }
+TEST_F(Regression, cornell_rays) { check("cornell_rays", "builtin:cornell", Visibility::rays); }
+TEST_F(Regression, atrium_manylods) { check("atrium_manylods", "builtin:atrium?detail=0.25", Visibility::manylods); }
+TEST_F(Regression, gltf_manylods) {
+    const TempFolder folder;
+    write_court(folder / "court.glb");
+    check("court_manylods", folder / "court.glb", Visibility::manylods);
+}
+
+// ---- The judge itself ----
+
+class Judge : public ::testing::Test {
+protected:
+    Judge() {
+        image.width = 96, image.height = 64;
+        for (const char* name : {"R", "G", "B"}) {
+            std::vector<float>& plane = image.add(name);
+            for (size_t i = 0; i < plane.size(); ++i) plane[i] = 0.2f + 0.1f * std::sin(float(i % 96) / 7) * std::cos(float(i / 96) / 5);
+        }
+        tools::write_exr(golden, image);
+    }
+    std::string failure(const Image& test) { return judge(golden, test, folder / "out").failure; }
+    bool left(const char* name) { return std::filesystem::exists(folder / "out" / name); }
+
+    const TempFolder folder;
+    const Path golden = folder / "g.exr";
+    Image image;
+};
+
+TEST_F(Judge, passes_the_same_image_through_halves) {
+    EXPECT_EQ(failure(image), "");
+    EXPECT_FALSE(left("g.test.exr"));
+}
+
+TEST_F(Judge, fails_perturbed_images_and_shows_them) {
+    Image brighter = image, tile = image, nan = image;
+    for (auto& channel : brighter.channels)
+        for (float& v : channel.values) v *= 1.03f;
+    for (size_t i = 0; i < 64; ++i) tile.channels[1].values[(20 + i / 8) * 96 + 30 + i % 8] += 0.01f;
+    nan.channels[2].values[5] = std::nanf("");
+    for (const Image& test : {brighter, tile, nan}) EXPECT_TRUE(contains(failure(test), "difference.exr"));
+    EXPECT_TRUE(left("g.test.exr") && left("g.difference.exr"));
+    std::ifstream in(folder / "out" / "g.json");
+    EXPECT_GT(json::parse(in)["limits"]["relMSE"], 0);
+}
+
+TEST_F(Judge, fails_a_missing_golden_with_the_cure) {
+    std::filesystem::remove(golden);
+    const std::string text = failure(image);
+    EXPECT_TRUE(contains(text, "MYRIAD_BLESS=1") && contains(text, "g.test.exr")) << text;
+    EXPECT_TRUE(left("g.test.exr"));
+}
+
+TEST_F(Judge, fails_another_size) {
+    Image small;
+    small.width = small.height = 8;
+    for (const char* name : {"R", "G", "B"}) small.add(name);
+    EXPECT_TRUE(contains(failure(small), "another size"));
+}
+
+}  // namespace
+}  // namespace myriad::tests
