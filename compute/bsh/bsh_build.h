@@ -108,8 +108,9 @@ MYRIAD_FN Sphere bsh_merge(BshSpheres children) {
 
 // How far a sample's patch reaches in its plane, in units of the leaf's radius. On a triangle that holds several samples it
 // reaches as far as the leaf, and ends where the triangle's own box ends; a triangle smaller than a sample's share of the area
-// has to stand for its neighbours, and reaches this far beyond itself. It is a compromise, measured on Sponza against exact rays (2^20
-// samples, 1024 VPLs, maps of 64): 0.3 lets 6 % too much light through and hides 2 % too much, 0.5 the reverse (2 % and 8 %).
+// has to stand for its neighbours, and reaches this far beyond itself: further, and it sticks out at every edge of the surface; less, and it
+// leaves holes. Measured against exact rays, Sponza and atrium, 2^20 samples, 1024 VPLs, maps of 64: relMSE 0.0083 and 0.0118 at 0.42,
+// 0.0096 and 0.0131 at 0.6, 0.038 and 0.021 at 1.
 const float bsh_patch_small = 0.42f;
 
 // `share`: the surface's area over the number of samples.
