@@ -148,7 +148,8 @@ TEST(trace, devices_without_timestamps_have_no_gpu_events) {
     RunRecord run = made_up();
     for (FrameRun& frame : run.frames)
         for (engine::PassTime& p : frame.passes) p.gpu_ms = p.gpu_begin_ms = 0;
-    for (const json& event : json::parse(trace_json(run))["traceEvents"]) EXPECT_TRUE(event["ph"] == "M" || event["tid"] != 3);
+    const json trace = json::parse(trace_json(run));  // a loop over a member of a temporary would outlive it
+    for (const json& event : trace["traceEvents"]) EXPECT_TRUE(event["ph"] == "M" || event["tid"] != 3);
 }
 
 TEST(finite, counts_broken_pixels_and_names_the_first) {
