@@ -178,7 +178,7 @@ TEST(Builtin, MaterialsArePhysical) {
         for (const auto& m : load(source).materials) {
             const float most = std::max({m.base_color.x, m.base_color.y, m.base_color.z});
             EXPECT_EQ(m.metallic, 0) << m.name;
-            EXPECT_TRUE(m.base_color_texture != none || (most >= 0.2f && most <= 0.8f)) << m.name;
+            EXPECT_TRUE(m.base_color_texture.texture != none || (most >= 0.2f && most <= 0.8f)) << m.name;
         }
     }
 }

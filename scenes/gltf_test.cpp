@@ -301,17 +301,17 @@ TEST_F(Gltf, MaterialsAndTextures) {
     expect_near(vec3(m.base_color), {0.1f, 0.2f, 0.3f});
     EXPECT_EQ(m.metallic, 0);
     EXPECT_EQ(m.roughness, 0.25f);
-    EXPECT_EQ(m.metallic_roughness_texture, none);
+    EXPECT_EQ(m.metallic_roughness_texture.texture, none);
     const std::vector<uint8_t> pixels = {255, 0, 0, 255, 128, 128, 128, 255};
-    for (uint32_t which : {m.base_color_texture, m.emissive_texture}) {
+    for (uint32_t which : {m.base_color_texture.texture, m.emissive_texture.texture}) {
         ASSERT_LT(which, scene.textures.size());
         EXPECT_EQ(scene.textures[which].width, 2u);
         EXPECT_EQ(scene.textures[which].height, 1u);
         EXPECT_EQ(scene.textures[which].rgba, pixels);
     }
-    EXPECT_EQ(scene.textures[m.base_color_texture].wrap_u, Texture::Wrap::clamp);
-    EXPECT_EQ(scene.textures[m.base_color_texture].wrap_v, Texture::Wrap::mirror);
-    EXPECT_EQ(scene.textures[m.emissive_texture].wrap_u, Texture::Wrap::repeat);
+    EXPECT_EQ(scene.textures[m.base_color_texture.texture].wrap_u, Texture::Wrap::clamp);
+    EXPECT_EQ(scene.textures[m.base_color_texture.texture].wrap_v, Texture::Wrap::mirror);
+    EXPECT_EQ(scene.textures[m.emissive_texture.texture].wrap_u, Texture::Wrap::repeat);
     ASSERT_EQ(scene.warnings.size(), 1u);
     EXPECT_NE(scene.warnings[0].find("EXT_unheard_of"), std::string::npos);
 }

@@ -23,21 +23,35 @@ struct Texture {
     enum class Wrap : uint32_t { repeat, clamp, mirror } wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
 };
 
+// How a material uses a texture: where on it a surface's point lies.
+struct TextureUse {
+    uint32_t texture = none;
+    uint32_t set = 0;                            // of texture coordinates: 0 or 1
+    glm::mat3x2 transform{1, 0, 0, 1, 0, 0};     // (u, v) on the texture = transform * (u, v, 1)
+};
+
 struct Material {
     std::string name;
-    glm::vec4 base_color{1};           // linear; multiplies the texture
+    glm::vec4 base_color{1};           // linear; multiplies the texture and the vertex colour
     float metallic = 1, roughness = 1;
     glm::vec3 emissive{0};             // radiance, W/(m^2 sr); multiplies the texture
-    uint32_t base_color_texture = none;          // sRGB
-    uint32_t metallic_roughness_texture = none;  // linear; G roughness, B metallic
-    uint32_t emissive_texture = none;            // sRGB
+    TextureUse base_color_texture;           // sRGB, alpha linear
+    TextureUse metallic_roughness_texture;   // linear; G roughness, B metallic
+    TextureUse emissive_texture;             // sRGB
+    TextureUse normal_texture;               // linear; tangent space, +Y up
+    float normal_scale = 1;
+    enum class Alpha : uint32_t { opaque, mask, blend } alpha = Alpha::opaque;
+    float alpha_cutoff = 0.5f;         // mask: a point with less alpha is not there
+    bool unlit = false;                // shows its base colour as radiance, reflects no light (KHR_materials_unlit)
     bool double_sided = false;
 };
 
 struct Primitive {
     std::vector<glm::vec3> positions;
     std::vector<glm::vec3> normals;     // unit; empty: flat shading from the geometry
-    std::vector<glm::vec2> texcoords;   // empty: (0, 0)
+    std::vector<glm::vec4> tangents;    // xyz unit, w the sign of the bitangent; empty: from the texture coordinates
+    std::vector<glm::vec2> texcoords, texcoords1;  // sets 0 and 1; empty: (0, 0)
+    std::vector<glm::vec4> colors;      // linear, with alpha; empty: white
     std::vector<uint32_t> indices;      // three a triangle, always present, always in range
     uint32_t material = 0;
 };
@@ -75,6 +89,7 @@ struct Scene {
     std::vector<Texture> textures;
     std::vector<Light> lights;
     std::vector<Camera> cameras;       // may be empty: see framing_camera()
+    glm::vec3 background{0};           // radiance, the same in all directions, of what rays that leave the scene see
     std::vector<std::string> warnings; // harmless defects that were repaired or ignored, one sentence each
 };
 
@@ -82,6 +97,10 @@ struct Scene {
 struct Triangles {
     std::vector<glm::vec3> positions, normals;   // one a vertex; normals are unit
     std::vector<glm::vec2> texcoords;            // one a vertex
+    // One a vertex, or empty where no primitive has them: white, as set 0, from the texture coordinates (xyz 0: this vertex has none).
+    std::vector<glm::vec4> colors;
+    std::vector<glm::vec2> texcoords1;
+    std::vector<glm::vec4> tangents;
     std::vector<glm::uvec4> triangles;           // three vertex indices, then the material
     glm::vec3 lo{0}, hi{0};                      // bounds of all positions; lo == hi == 0 when empty
 };

@@ -57,9 +57,9 @@ protected:
         for (const auto& [u, v] : {std::pair{repeat, repeat}, {clamp, mirror}, {mirror, clamp}, {mirror, repeat}}) {
             auto& m = test.scene.materials[test.material({0.9f, 1, 0.8f}, {1, 1, 2}, u == mirror)];
             m.metallic = 0.6f;
-            m.base_color_texture = test.texture(7, 5, random, u, v);
-            m.metallic_roughness_texture = test.texture(1, 3, random, v, u);
-            m.emissive_texture = test.texture(16, 1, random, u, v);
+            m.base_color_texture = {test.texture(7, 5, random, u, v)};
+            m.metallic_roughness_texture = {test.texture(1, 3, random, v, u)};
+            m.emissive_texture = {test.texture(16, 1, random, u, v)};
         }
     }
 };

@@ -50,9 +50,9 @@ GeometryData geometry_data(const scenes::Scene& scene, const scenes::Triangles& 
         data.materials.push_back({.base_color = m.base_color,
                                   .emission = m.emissive,
                                   .metallic = m.metallic,
-                                  .base_color_texture = pack(m.base_color_texture),
-                                  .metallic_texture = pack(m.metallic_roughness_texture),
-                                  .emission_texture = m.emissive == vec3(0) ? TextureRef{} : pack(m.emissive_texture),
+                                  .base_color_texture = pack(m.base_color_texture.texture),
+                                  .metallic_texture = pack(m.metallic_roughness_texture.texture),
+                                  .emission_texture = m.emissive == vec3(0) ? TextureRef{} : pack(m.emissive_texture.texture),
                                   .double_sided = m.double_sided});
     return data;
 }

@@ -57,8 +57,8 @@ SurfaceRef surface_ref(const scenes::Scene& scene, const scenes::Triangles& tria
     s.geometric_normal = unit(glm::cross(dvec3(p[t.y]) - dvec3(p[t.x]), dvec3(p[t.z]) - dvec3(p[t.x])), dvec3(0, 1, 0));
     s.shading_normal = unit(blend(triangles.normals), s.geometric_normal);
     if (glm::dot(s.shading_normal, s.geometric_normal) < 0) s.shading_normal = -s.shading_normal;
-    s.albedo = dvec3(m.base_color) * texture(m.base_color_texture, true) * (1 - m.metallic * texture(m.metallic_roughness_texture, false).z);
-    s.emission = dvec3(m.emissive) * texture(m.emissive_texture, true);
+    s.albedo = dvec3(m.base_color) * texture(m.base_color_texture.texture, true) * (1 - m.metallic * texture(m.metallic_roughness_texture.texture, false).z);
+    s.emission = dvec3(m.emissive) * texture(m.emissive_texture.texture, true);
     s.double_sided = m.double_sided;
     return s;
 }

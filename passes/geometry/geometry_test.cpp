@@ -65,9 +65,9 @@ TEST(Geometry, textures_are_packed_once_and_only_when_used) {
     test.texture(3, 2, random);
     test.texture(5, 1, random);
     EXPECT_TRUE(geometry_data(test.scene, test.triangles).texels.empty());
-    test.scene.materials[test.material(vec3(1))].base_color_texture = 1;
-    test.scene.materials[test.material(vec3(1))].metallic_roughness_texture = 1;
-    test.scene.materials[test.material(vec3(1))].emissive_texture = 0;  // black emission: not needed
+    test.scene.materials[test.material(vec3(1))].base_color_texture = {1};
+    test.scene.materials[test.material(vec3(1))].metallic_roughness_texture = {1};
+    test.scene.materials[test.material(vec3(1))].emissive_texture = {0};  // black emission: not needed
     const GeometryData data = geometry_data(test.scene, test.triangles);
     EXPECT_EQ(data.texels.size(), srgb_table_size + 5);
     EXPECT_EQ(data.materials[0].base_color_texture.width, 0u);
@@ -100,7 +100,7 @@ TEST(Lights, power_of_each_kind) {
     scenes::Texture half;
     half.width = 2, half.height = 1, half.rgba = {0, 0, 0, 255, 255, 255, 255, 255};
     test.scene.textures.push_back(half);
-    test.scene.materials[textured].emissive_texture = 0;
+    test.scene.materials[textured].emissive_texture = {0};
 
     const auto power = [&] { return light_data(test.scene, test.triangles).power; };
     EXPECT_EQ(power(), 0);

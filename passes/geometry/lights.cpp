@@ -41,8 +41,8 @@ Light punctual_light(const scenes::Light& from, const scenes::Triangles& triangl
 // The emission of a material, with the mean of all texels standing for its texture.
 dvec3 mean_radiance(const scenes::Scene& scene, const scenes::Material& material) {
     dvec3 radiance(material.emissive);
-    if (radiance == dvec3(0) || material.emissive_texture == scenes::none) return radiance;
-    const scenes::Texture& texture = scene.textures[material.emissive_texture];
+    if (radiance == dvec3(0) || material.emissive_texture.texture == scenes::none) return radiance;
+    const scenes::Texture& texture = scene.textures[material.emissive_texture.texture];
     if (texture.rgba.empty()) return radiance;
     double linear[256];
     for (int code = 0; code < 256; ++code) linear[code] = srgb_to_linear(uint8_t(code));

@@ -128,7 +128,7 @@ TEST_F(VplTest, a_double_sided_emitter_shines_both_ways) {
 TEST_F(VplTest, textured_emission_is_unbiased_over_seeds) {
     TestScene test = box(vec3(0.5f));
     const uint32_t lamp = test.material(vec3(0), {1, 1, 1});
-    test.scene.materials[lamp].emissive_texture = test.texture(4, 4, random);
+    test.scene.materials[lamp].emissive_texture = {test.texture(4, 4, random)};
     test.quad({0, 1.9f, -1}, {1, 0, 0}, {0, 0, 1}, lamp);
     // Bilinear weights add up to one a texel under wrapping: the mean over the quad is the mean of the texels.
     dvec3 mean(0);

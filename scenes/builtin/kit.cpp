@@ -201,7 +201,7 @@ uint32_t add_material(Scene& scene, const std::string& name, vec3 albedo, float 
     material.base_color = glm::vec4(albedo, 1);
     material.metallic = 0;
     material.roughness = roughness;
-    material.base_color_texture = texture;
+    material.base_color_texture = {texture};
     scene.materials.push_back(material);
     return uint32_t(scene.materials.size() - 1);
 }

@@ -110,9 +110,9 @@ void read_materials(const Place& place, Scene& scene) {
         for (int c = 0; c < 3; ++c)
             if (size_t(c) < in.emissiveFactor.size())
                 out.emissive[c] = factor(in.emissiveFactor[size_t(c)]) * emissive_strength(here, in);
-        out.base_color_texture = textures.use(here, pbr.baseColorTexture);
-        out.metallic_roughness_texture = textures.use(here, pbr.metallicRoughnessTexture);
-        out.emissive_texture = textures.use(here, in.emissiveTexture);
+        out.base_color_texture.texture = textures.use(here, pbr.baseColorTexture);
+        out.metallic_roughness_texture.texture = textures.use(here, pbr.metallicRoughnessTexture);
+        out.emissive_texture.texture = textures.use(here, in.emissiveTexture);
         out.double_sided = in.doubleSided;
         transparent += in.alphaMode != "OPAQUE";
         scene.materials.push_back(std::move(out));
