@@ -25,7 +25,7 @@ struct Kit {
         m.emissive = emission;
         m.double_sided = true;
         scene.materials.push_back(m);
-        scene.meshes[0].primitives.push_back({{}, {}, {}, {}, uint32_t(scene.materials.size() - 1)});
+        scene.meshes[0].primitives.push_back({.material = uint32_t(scene.materials.size() - 1)});
         return uint32_t(scene.materials.size() - 1);
     }
     void triangle(uint32_t material, const vec3& a, const vec3& b, const vec3& c) {
