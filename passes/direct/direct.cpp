@@ -11,8 +11,9 @@ constexpr uint32_t steps_a_ray = 4096;
 
 }  // namespace
 
-DirectPass::DirectPass(engine::Device& device, uint32_t width, uint32_t height, uint32_t lights_a_dispatch)
-    : direct_(device, engine::passes_kernels, "direct/direct"),
+DirectPass::DirectPass(engine::Device& device, uint32_t width, uint32_t height, uint32_t lights_a_dispatch,
+                       const engine::Constants& variant)
+    : direct_(device, engine::passes_kernels, "direct/direct", variant),
       lights_a_dispatch_(lights_a_dispatch ? lights_a_dispatch : std::max(1u, device.loop_limit() / steps_a_ray)),
       radiance_(device, "images", "direct light", uint64_t(width) * height),
       exhausted_(device, "images", "direct light exhausted", 1) {}

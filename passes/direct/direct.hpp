@@ -14,7 +14,8 @@ public:
     static bool needed(const LightTable& lights) { return lights.has_punctual(); }
 
     // `lights_a_dispatch`: at most so many are looped over at once; 0: what Device::loop_limit() allows.
-    DirectPass(engine::Device& device, uint32_t width, uint32_t height, uint32_t lights_a_dispatch = 0);
+    DirectPass(engine::Device& device, uint32_t width, uint32_t height, uint32_t lights_a_dispatch = 0,
+               const engine::Constants& variant = {});
 
     void record(engine::Recorder& recorder, const GBuffer& gbuffer, const compute::Bvh& bvh, const LightTable& lights);
 

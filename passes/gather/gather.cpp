@@ -8,9 +8,10 @@ namespace myriad::passes {
 
 using engine::passes_kernels;
 
-GatherPass::GatherPass(engine::Device& device, GatherVisibility visibility, uint32_t width, uint32_t height)
+GatherPass::GatherPass(engine::Device& device, GatherVisibility visibility, uint32_t width, uint32_t height,
+                       const engine::Constants& variant)
     : device_(device), visibility_(visibility),
-      program_(visibility == GatherVisibility::rays ? engine::Program(device, passes_kernels, "gather/rays")
+      program_(visibility == GatherVisibility::rays ? engine::Program(device, passes_kernels, "gather/rays", variant)
                                                     : engine::Program(device, passes_kernels, "gather/maps",
                                                                       {{2, visibility == GatherVisibility::maps}})),
       irradiance_(device, "images", "irradiance", uint64_t(width) * height) {}

@@ -24,7 +24,7 @@ struct GatherInputs {
 
 class GatherPass {
 public:
-    GatherPass(engine::Device& device, GatherVisibility visibility, uint32_t width, uint32_t height);
+    GatherPass(engine::Device& device, GatherVisibility visibility, uint32_t width, uint32_t height, const engine::Constants& variant = {});
 
     void clear(engine::Recorder& recorder) { recorder.fill(irradiance_, 0); }
 

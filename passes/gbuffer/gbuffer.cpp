@@ -28,8 +28,8 @@ GBufferRef GBuffer::read(engine::Recorder& recorder) const {
             .width = width, .height = height};
 }
 
-GBufferPass::GBufferPass(engine::Device& device, uint32_t width, uint32_t height)
-    : trace_(device, passes_kernels, "gbuffer/trace"), shade_(device, passes_kernels, "gbuffer/shade"),
+GBufferPass::GBufferPass(engine::Device& device, uint32_t width, uint32_t height, const engine::Constants& variant)
+    : trace_(device, passes_kernels, "gbuffer/trace", variant), shade_(device, passes_kernels, "gbuffer/shade", variant),
       gbuffer_(device, width, height), hits_(device, "images", "primary hits", gbuffer_.pixels()),
       exhausted_(device, "images", "primary hits exhausted", 1) {}
 

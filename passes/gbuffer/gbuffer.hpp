@@ -24,7 +24,8 @@ struct GBuffer {
 
 class GBufferPass {
 public:
-    GBufferPass(engine::Device& device, uint32_t width, uint32_t height);
+    // `variant`: specialisation constants that the scene needs of kernels, the same in all passes (Frame).
+    GBufferPass(engine::Device& device, uint32_t width, uint32_t height, const engine::Constants& variant = {});
 
     void record(engine::Recorder& recorder, const Geometry& geometry, const compute::Bvh& bvh, const scenes::Camera& camera);
 

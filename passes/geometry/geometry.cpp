@@ -65,14 +65,22 @@ Geometry::Geometry(engine::Device& device, const scenes::Triangles& triangles, c
       triangles_(engine::upload(device, "scene", "triangles", triangles.triangles)),
       attributes_(engine::upload(device, "scene", "vertex attributes", data.attributes)),
       materials_(engine::upload(device, "scene", "materials", data.materials)),
-      texels_(engine::upload(device, "scene", "texels", data.texels)) {}
+      texels_(engine::upload(device, "scene", "texels", data.texels)) {
+    engine::Recorder addresses(device);
+    arrays_ = engine::upload(device, "scene", "geometry arrays", std::vector<GeometryArrays>{read_arrays(addresses)});
+}
 
-GeometryRef Geometry::read(engine::Recorder& recorder) const {
+GeometryArrays Geometry::read_arrays(engine::Recorder& recorder) const {
     return {.positions = recorder.read(positions_),
             .triangles = recorder.read(triangles_),
             .attributes = recorder.read(attributes_),
             .materials = recorder.read(materials_),
             .texels = recorder.read(texels_)};
+}
+
+GeometryRef Geometry::read(engine::Recorder& recorder) const {
+    read_arrays(recorder);  // kernels find these addresses in memory: they are declared all the same
+    return recorder.read(arrays_);
 }
 
 }  // namespace myriad::passes

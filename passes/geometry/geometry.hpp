@@ -19,6 +19,7 @@ class Geometry {
 public:
     Geometry(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles);
 
+    // For push constants. Counts as a read of all of it in the next dispatch.
     GeometryRef read(engine::Recorder& recorder) const;
 
     const engine::Array<vec3>& positions() const { return positions_; }
@@ -26,12 +27,14 @@ public:
 
 private:
     Geometry(engine::Device& device, const scenes::Triangles& triangles, const GeometryData& data);
+    GeometryArrays read_arrays(engine::Recorder& recorder) const;
 
     engine::Array<vec3> positions_;
     engine::Array<uvec4> triangles_;
     engine::Array<VertexAttributes> attributes_;
     engine::Array<Material> materials_;
     engine::Array<uint> texels_;
+    engine::Array<GeometryArrays> arrays_;
 };
 
 // What a byte of an sRGB texture means.

@@ -9,7 +9,7 @@ const uint wrap_repeat = 0u, wrap_clamp = 1u, wrap_mirror = 2u;  // as scenes::T
 
 // Where a texture lies among the texels; width 0: there is none.
 struct TextureRef {
-    uint first;          // index of its first word in GeometryRef::texels
+    uint first;          // index of its first word in GeometryArrays::texels
     uint width, height;
     uint wrap;           // of u, and of v << 2
 };
@@ -31,8 +31,8 @@ struct VertexAttributes {
 MYRIAD_ARRAY(VertexPositions, vec3, 4)
 MYRIAD_ARRAY(VertexAttributesArray, VertexAttributes, 4)
 
-// 40 bytes. Positions are apart from the other attributes because trees and deformation need only them.
-struct GeometryRef {
+// Where the scene's arrays are. Positions are apart from the other attributes because trees and deformation need only them.
+struct GeometryArrays {
     VertexPositions positions;
     Uint4s triangles;    // three vertices, then the material
     VertexAttributesArray attributes;
@@ -40,6 +40,8 @@ struct GeometryRef {
     Uints texels;        // 256 floats that decode sRGB, then RGBA8 words, R lowest; empty when nothing is textured
 };
 const uint srgb_table_size = 256u;
+// What goes into push constants, which are short: the address of that one struct, `.at[0]`.
+MYRIAD_ARRAY(GeometryRef, GeometryArrays, 8)
 
 // A point of a triangle.
 struct Surface {
@@ -106,7 +108,7 @@ MYRIAD_FN TexelPair texel_pair(float t, uint size, uint mode) {
 MYRIAD_END
 
 #ifdef __cplusplus
-static_assert(sizeof(myriad::Material) == 84 && sizeof(myriad::VertexAttributes) == 20 && sizeof(myriad::GeometryRef) == 40);
+static_assert(sizeof(myriad::Material) == 84 && sizeof(myriad::VertexAttributes) == 20 && sizeof(myriad::GeometryArrays) == 40 && sizeof(myriad::GeometryRef) == 8);
 #endif
 
 #endif

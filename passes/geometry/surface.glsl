@@ -5,7 +5,7 @@
 
 #include "passes/geometry/geometry_io.h"
 
-vec3 texel_rgb(GeometryRef g, TextureRef texture_, uint x, uint y, bool srgb) {
+vec3 texel_rgb(GeometryArrays g, TextureRef texture_, uint x, uint y, bool srgb) {
     const uint word = g.texels.at[texture_.first + y * texture_.width + x];
     const uvec3 code = uvec3(word, word >> 8, word >> 16) & 0xffu;
     if (!srgb) return vec3(code) / 255.0;
@@ -13,7 +13,7 @@ vec3 texel_rgb(GeometryRef g, TextureRef texture_, uint x, uint y, bool srgb) {
 }
 
 // White where there is no texture, so that the result always multiplies a factor.
-vec3 texture_rgb(GeometryRef g, TextureRef texture_, vec2 uv, bool srgb) {
+vec3 texture_rgb(GeometryArrays g, TextureRef texture_, vec2 uv, bool srgb) {
     if (texture_.width == 0u) return vec3(1.0);
     const TexelPair x = texel_pair(uv.x, texture_.width, texture_.wrap & 3u);
     const TexelPair y = texel_pair(uv.y, texture_.height, texture_.wrap >> 2);
@@ -23,7 +23,8 @@ vec3 texture_rgb(GeometryRef g, TextureRef texture_, vec2 uv, bool srgb) {
 }
 
 // (u, v) are barycentric: (1 - u - v) p0 + u p1 + v p2.
-Surface surface_at(GeometryRef g, uint triangle, float u, float v) {
+Surface surface_at(GeometryRef geometry, uint triangle, float u, float v) {
+    GeometryArrays g = geometry.at[0];
     const uvec4 corners = g.triangles.at[triangle];
     const vec3 p0 = g.positions.at[corners.x];
     const vec3 p1 = g.positions.at[corners.y];

@@ -22,12 +22,12 @@ void append_ends(std::vector<float>& ends, std::span<const double> weights) {
 }
 
 std::vector<PilotTally> run_pilot(engine::Recorder& recorder, const Geometry& geometry, const compute::Bvh& bvh, const LightTable& lights,
-                                  uint32_t seed) {
+                                  uint32_t seed, const engine::Constants& variant) {
     engine::Device& device = recorder.device();
     const uint32_t cells = lights.punctual() * guide_cells, samples = samples_a_cell(lights.punctual());
     const engine::Array<PilotTally> tallies(device, "vpls", "pilot tallies", cells);
     if (cells > 0) {
-        const engine::Program pilot(device, engine::passes_kernels, "vpl/pilot");
+        const engine::Program pilot(device, engine::passes_kernels, "vpl/pilot", variant);
         auto scope = recorder.scope("vpl pilot");
         recorder.fill(tallies, 0);
         recorder.dispatch(pilot,
@@ -63,8 +63,8 @@ GuideData guide_data(const LightData& lights, std::span<const PilotTally> tallie
 }
 
 EmissionGuide::EmissionGuide(engine::Recorder& recorder, const Geometry& geometry, const compute::Bvh& bvh, const LightTable& lights,
-                             uint32_t seed)
-    : data_(guide_data(lights.data(), run_pilot(recorder, geometry, bvh, lights, seed), samples_a_cell(lights.punctual()))),
+                             uint32_t seed, const engine::Constants& variant)
+    : data_(guide_data(lights.data(), run_pilot(recorder, geometry, bvh, lights, seed, variant), samples_a_cell(lights.punctual()))),
       lights_(engine::upload(recorder.device(), "vpls", "guided lights", data_.lights)),
       cells_(engine::upload(recorder.device(), "vpls", "guide", data_.cells)) {}
 

@@ -24,7 +24,8 @@ GuideData guide_data(const LightData& lights, std::span<const PilotTally> tallie
 class EmissionGuide {
 public:
     // Runs the pilot, which submits what is recorded. The same scene and seed give the same guide.
-    EmissionGuide(engine::Recorder& recorder, const Geometry& geometry, const compute::Bvh& bvh, const LightTable& lights, uint32_t seed);
+    EmissionGuide(engine::Recorder& recorder, const Geometry& geometry, const compute::Bvh& bvh, const LightTable& lights, uint32_t seed,
+                  const engine::Constants& variant = {});
 
     Ref<Light> lights(engine::Recorder& recorder) const { return recorder.read(lights_); }
     Ref<float> cells(engine::Recorder& recorder) const { return recorder.read(cells_); }

@@ -18,11 +18,16 @@ constexpr uint64_t most_paths = 8;         // a VPL that is asked for: the patie
 constexpr uint64_t most_slots = 16;        // likewise, which bounds memory where there are many bounces
 constexpr double fill = 0.98;              // of what is asked for is aimed at, for the next seed may find a little more
 
+engine::Constants guided(engine::Constants variant) {
+    variant[2] = 1;  // emit.comp
+    return variant;
+}
+
 }  // namespace
 
-VplPass::VplPass(engine::Device& device, uint32_t max_vpls)
-    : device_(device), emit_(device, passes_kernels, "vpl/emit"), emit_guided_(device, passes_kernels, "vpl/emit", {{2, 1}}),
-      bounce_(device, passes_kernels, "vpl/bounce"), compact_(device, passes_kernels, "vpl/compact"),
+VplPass::VplPass(engine::Device& device, uint32_t max_vpls, const engine::Constants& variant)
+    : device_(device), variant_(variant), emit_(device, passes_kernels, "vpl/emit", variant),
+      emit_guided_(device, passes_kernels, "vpl/emit", guided(variant)), bounce_(device, passes_kernels, "vpl/bounce", variant), compact_(device, passes_kernels, "vpl/compact"),
       vpls_(device, "vpls", "VPLs", max_vpls), count_(device, "vpls", "VPL count", 2),
       exhausted_(device, "vpls", "VPL paths exhausted", 1), views_(device, "vpls", "VPL views", max_vpls) {
     assert(max_vpls >= 1 && max_vpls <= path_limit);
@@ -56,7 +61,7 @@ void VplPass::prepare(engine::Recorder& recorder, const Geometry& geometry, cons
     // Neither the guide nor, as a rule, the number of paths knows the points that are used in the end: else the sum of their
     // fluxes, being looked at before it is chosen, would be biased.
     const uint32_t pilot_seed = hash(seed ^ 0x5eedu);
-    guide_.emplace(recorder, geometry, bvh, lights, pilot_seed);
+    guide_.emplace(recorder, geometry, bvh, lights, pilot_seed, variant_);
     const auto alive = [&](uint32_t with_seed) {
         make_slots(uint64_t(paths_) * vpls_a_path(lights, bounces));
         {

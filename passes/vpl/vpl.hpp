@@ -15,7 +15,7 @@ namespace myriad::passes {
 class VplPass {
 public:
     // At most `max_vpls` VPLs, 1 to 2^24.
-    VplPass(engine::Device& device, uint32_t max_vpls);
+    VplPass(engine::Device& device, uint32_t max_vpls, const engine::Constants& variant = {});
 
     // How many VPLs a path may leave: one a bounce, and one on the emitter where there are emissive triangles.
     static uint32_t vpls_a_path(const LightTable& lights, uint32_t bounces) { return bounces + lights.has_emissive(); }
@@ -51,6 +51,7 @@ private:
                       uint32_t bounces, uint32_t seed, uint32_t paths);
 
     engine::Device& device_;
+    engine::Constants variant_;
     engine::Program emit_, emit_guided_, bounce_, compact_;
     engine::Array<Vpl> slots_, vpls_;
     engine::Array<uint> alive_, slot_count_, count_, exhausted_;
