@@ -273,10 +273,11 @@ private:
 
 Scene load_gltf(const std::string& path) try {
     std::string warnings;
-    const tinygltf::Model model = gltf::read_model(path, warnings);
+    gltf::Document document = gltf::read_document(path, warnings);
+    const tinygltf::Model& model = document.model;
     Scene scene;
     scene.name = path;
-    const Place place{model, path, ""};
+    const Place place{model, path, "", &document};
     check_extensions(place, scene);
     gltf::read_materials(place, scene);
     read_meshes(place, scene);

@@ -66,9 +66,6 @@ const Accessor& get(const Place& place, int index) {
     if (index < 0 || size_t(index) >= place.model.accessors.size())
         place.fail("there is no accessor " + std::to_string(index), "export the file again");
     const Accessor& accessor = place.model.accessors[size_t(index)];
-    // Without a buffer view (all zeros, for sparse data) no data bounds what the count can make us allocate.
-    if (accessor.bufferView < 0 && accessor.count > (1u << 24))
-        place.fail("accessor " + std::to_string(index) + " has no bufferView and more than 2^24 elements", "export the file again");
     return accessor;
 }
 
@@ -97,18 +94,32 @@ void Place::fail(const std::string& what, const std::string& cure) const {
     throw InputError(file + ": " + (where.empty() ? "" : where + ": ") + what + "; " + cure + ".");
 }
 
+void Place::spend(uint64_t count, uint64_t size) const {
+    if (!document->budget.spend(count, size))
+        fail("it asks for " + std::to_string(count) + " times " + std::to_string(size) + " bytes of memory, out of all proportion to the file",
+             "the file is damaged or made to exhaust memory, export it again");
+}
+
+std::string quote(const std::string& text) {
+    std::string out = text.substr(0, limits::quoted_characters);
+    for (char& c : out)
+        if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = '?';
+    return '"' + out + (out.size() < text.size() ? " …\"" : "\"");
+}
+
 Range buffer_view(const Place& place, int index) {
     const auto& model = place.model;
     const std::string name = "bufferView " + std::to_string(index);
     if (index < 0 || size_t(index) >= model.bufferViews.size()) place.fail("there is no " + name, "export the file again");
     const auto& view = model.bufferViews[size_t(index)];
-    if (view.buffer < 0 || size_t(view.buffer) >= model.buffers.size())
+    const auto& buffers = place.document->buffers;
+    if (view.buffer < 0 || size_t(view.buffer) >= buffers.size())
         place.fail(name + " refers to buffer " + std::to_string(view.buffer) + ", which does not exist", "export the file again");
-    const auto& data = model.buffers[size_t(view.buffer)].data;
-    if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset)
-        place.fail(name + " ends beyond buffer " + std::to_string(view.buffer) + ", which has " + std::to_string(data.size()) + " bytes",
+    const Range& data = buffers[size_t(view.buffer)];
+    if (view.byteOffset > data.size || view.byteLength > data.size - view.byteOffset)
+        place.fail(name + " ends beyond buffer " + std::to_string(view.buffer) + ", which has " + std::to_string(data.size) + " bytes",
                    "the buffer is truncated, export or download it again");
-    return {data.data() + view.byteOffset, view.byteLength};
+    return {data.data + view.byteOffset, view.byteLength};
 }
 
 std::vector<float> read_floats(const Place& place, int index, int components) {
@@ -127,11 +138,13 @@ std::vector<float> read_floats(const Place& place, int index, int components) {
         const size_t stride = size_t(accessor.bufferView) < place.model.bufferViews.size()
                                   ? place.model.bufferViews[size_t(accessor.bufferView)].byteStride : 0;
         const Elements in = elements(place, accessor.bufferView, accessor.byteOffset, accessor.count, element, stride);
+        place.spend(accessor.count, sizeof(float) * size_t(components));
         out.reserve(accessor.count * size_t(components));
         for (size_t i = 0; i < accessor.count; ++i)
             for (size_t c = 0; c < size_t(components); ++c)
                 out.push_back(component(in.first + i * in.stride + c * component_size, accessor.componentType, accessor.normalized));
-    } else {
+    } else {  // zeros, for sparse data
+        place.spend(accessor.count, sizeof(float) * size_t(components));
         out.resize(accessor.count * size_t(components));
     }
     if (accessor.sparse.isSparse) apply_sparse(place, accessor, element, component_size, components, out);
@@ -144,6 +157,7 @@ std::vector<uint32_t> read_indices(const Place& place, int index) {
         place.fail("are not plain unsigned integers", "export the file again");
     const size_t size = size_t(tinygltf::GetComponentSizeInBytes(uint32_t(accessor.componentType)));
     const Elements in = elements(place, accessor.bufferView, accessor.byteOffset, accessor.count, size, 0);
+    place.spend(accessor.count, sizeof(uint32_t));
     std::vector<uint32_t> out(accessor.count);
     for (size_t i = 0; i < out.size(); ++i) out[i] = integer(in.first + i * in.stride, accessor.componentType);
     return out;

@@ -6,7 +6,8 @@
 #include <vector>
 
 #include <glm/glm.hpp>
-#include <tiny_gltf.h>
+
+#include "scenes/gltf/container.hpp"
 
 namespace myriad::scenes::gltf {
 
@@ -14,16 +15,17 @@ namespace myriad::scenes::gltf {
 struct Place {
     const tinygltf::Model& model;
     std::string file, where;
+    Document* document;
 
-    Place at(const std::string& inner) const { return {model, file, where.empty() ? inner : where + " " + inner}; }
+    Place at(const std::string& inner) const { return {model, file, where.empty() ? inner : where + " " + inner, document}; }
     // Throws InputError: "FILE: WHERE: WHAT; CURE."
     [[noreturn]] void fail(const std::string& what, const std::string& cure) const;
+    // Before count * size bytes are decoded: fails where they are more than a file like this may ask for (limits.hpp).
+    void spend(uint64_t count, uint64_t size) const;
 };
 
-struct Range {
-    const uint8_t* data = nullptr;
-    size_t size = 0;
-};
+// Text of the file's own, fit for a message: in quotes, shortened, without control characters.
+std::string quote(const std::string& text);
 
 // The bytes of a buffer view.
 Range buffer_view(const Place& place, int index);

@@ -3,16 +3,18 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <new>
 
 #include <nlohmann/json.hpp>
 
 #include "engine/error.hpp"
+#include "scenes/gltf/uri.hpp"
 
 namespace myriad::scenes::gltf {
 namespace {
 
-using Bytes = std::vector<unsigned char>;
+using nlohmann::json;
 
 constexpr uint32_t json_chunk = 0x4E4F534A, bin_chunk = 0x004E4942;
 
@@ -21,8 +23,7 @@ Bytes read_file(const std::string& path) {
     if (!std::filesystem::is_regular_file(path, error))
         throw InputError(path + ": there is no such file; give a .gltf or .glb file, or builtin:NAME.");
     const auto size = std::filesystem::file_size(path, error);
-    // tinygltf counts the bytes of a file in 32 bits, some in int.
-    if (error || size > 0x7fffffff) throw InputError(path + ": the file is larger than 2 GiB; move its buffers to .bin files.");
+    if (error || size > limits::file_bytes) throw InputError(path + ": the file is larger than 4 GiB; move its buffers to .bin files.");
     Bytes bytes(size);
     std::ifstream file(path, std::ios::binary);
     if (!file.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(size)))
@@ -38,11 +39,11 @@ uint32_t u32(const Bytes& bytes, size_t at) {
 
 struct Container {
     std::string json;
-    Bytes bin;
+    Range bin;
     bool binary = false;
 };
 
-// Takes the file apart. The chunks are checked here because tinygltf accepts a BIN chunk that ends 8 bytes past the file.
+// Takes the file apart. `bytes` stay where the chunk of buffers is.
 Container take_apart(const std::string& path, const Bytes& bytes) {
     if (bytes.size() < 4 || std::memcmp(bytes.data(), "glTF", 4) != 0) return {std::string(bytes.begin(), bytes.end()), {}, false};
     const auto bad = [&](const std::string& what) {
@@ -61,15 +62,14 @@ Container take_apart(const std::string& path, const Bytes& bytes) {
         if (at == 12) {
             if (type != json_chunk) throw bad("the first chunk is not JSON");
             out.json.assign(begin, end);
-        } else if (type == bin_chunk && out.bin.empty()) {
-            out.bin.assign(begin, end);
+        } else if (type == bin_chunk && !out.bin.data) {
+            out.bin = {bytes.data() + at + 8, size};
         }
         at += 8 + size;
     }
     return out;
 }
 
-// tinygltf copies `extras` by recursion: deep nesting would overflow the stack.
 void check_depth(const std::string& path, const std::string& json) {
     int depth = 0;
     bool quoted = false;
@@ -81,7 +81,9 @@ void check_depth(const std::string& path, const std::string& json) {
         } else if (c == '"') {
             quoted = true;
         } else if (c == '[' || c == '{') {
-            if (++depth > 200) throw InputError(path + ": the JSON is nested deeper than 200 levels; remove what nests so deep.");
+            if (++depth > limits::json_depth)
+                throw InputError(path + ": the JSON is nested deeper than " + std::to_string(limits::json_depth) +
+                                 " levels; remove what nests so deep.");
         } else if (c == ']' || c == '}') {
             --depth;
         }
@@ -90,46 +92,73 @@ void check_depth(const std::string& path, const std::string& json) {
 
 // The index accessor of a Draco primitive may have no buffer view, for the indices are in the compressed data; tinygltf
 // built without Draco refuses such a file. So Draco primitives lose their `indices` before tinygltf sees them.
-void strip_draco_indices(const std::string& path, std::string& text) {
-    if (text.find("KHR_draco_mesh_compression") == std::string::npos) return;
-    try {
-        nlohmann::json json = nlohmann::json::parse(text);
-        for (auto& mesh : json.at("meshes"))
-            for (auto& primitive : mesh.at("primitives"))
-                if (primitive.contains("extensions") && primitive["extensions"].contains("KHR_draco_mesh_compression"))
-                    primitive.erase("indices");
-        text = json.dump();
-    } catch (const nlohmann::json::exception& e) {
-        throw InputError(path + ": the JSON is not valid glTF (" + e.what() + "); export it again.");
-    }
+void strip_draco_indices(json& root) {
+    if (!root.contains("meshes")) return;
+    for (auto& mesh : root.at("meshes"))
+        for (auto& primitive : mesh.at("primitives"))
+            if (primitive.contains("extensions") && primitive["extensions"].contains("KHR_draco_mesh_compression"))
+                primitive.erase("indices");
 }
 
-// A GLB again, from its parts: tinygltf knows a BIN chunk only in this form.
-Bytes put_together(const Container& in) {
-    const auto padded = [](size_t n) { return (n + 3) & ~size_t(3); };
-    Bytes out;
-    const auto word = [&](size_t value) {
-        for (int shift = 0; shift < 32; shift += 8) out.push_back(uint8_t(value >> shift));
-    };
-    const size_t json = padded(in.json.size()), bin = padded(in.bin.size());
-    out.reserve(28 + json + bin);
-    out.insert(out.end(), {'g', 'l', 'T', 'F'});
-    word(2), word(20 + json + (bin ? 8 + bin : 0)), word(json), word(json_chunk);
-    out.insert(out.end(), in.json.begin(), in.json.end());
-    out.resize(20 + json, ' ');
-    if (bin) {
-        word(bin), word(bin_chunk);
-        out.insert(out.end(), in.bin.begin(), in.bin.end());
-        out.resize(28 + json + bin, 0);
-    }
+std::string text(const json& object, const char* key) {
+    const auto it = object.find(key);
+    return it != object.end() && it->is_string() ? it->get<std::string>() : "";
+}
+
+// Removes the array `key` from the root: its elements.
+std::vector<json> take(json& root, const char* key) {
+    const auto it = root.find(key);
+    if (it == root.end() || !it->is_array()) return {};
+    std::vector<json> out = std::move(it->get_ref<json::array_t&>());
+    root.erase(it);
     return out;
 }
 
-// Keeps encoded bytes instead of decoding. An image in a buffer view is skipped: `bytes` and `size` are unchecked there.
-bool keep_encoded(tinygltf::Image* image, int, std::string*, std::string*, int, int, const unsigned char* bytes, int size, void*) {
-    if (image->bufferView < 0) image->image.assign(bytes, bytes + size);
-    image->as_is = true;
-    return true;
+// The bytes of each buffer, each file and each chunk held once, however many buffers show it.
+void read_buffers(const Place& place, const std::vector<json>& buffers, const Container& container) {
+    Document& document = *place.document;
+    std::map<std::string, Range> known;
+    for (size_t i = 0; i < buffers.size(); ++i) {
+        const Place here = place.at("buffer " + std::to_string(i));
+        const json& buffer = buffers[i];
+        const auto length = buffer.is_object() ? buffer.find("byteLength") : buffer.end();
+        if (!buffer.is_object() || length == buffer.end() || !length->is_number_unsigned())
+            here.fail("it has no valid byteLength", "export the file again");
+        Range range;
+        const std::string uri = text(buffer, "uri");
+        if (buffer.contains("uri")) {
+            const std::string file = file_of_uri(here, uri);
+            const auto it = file.empty() ? known.end() : known.find(file);
+            if (it != known.end()) range = it->second;
+            else {
+                const Bytes& bytes = document.owned.emplace_back(read_uri(here, uri));
+                range = {bytes.data(), bytes.size()};
+                if (!file.empty()) known[file] = range;
+            }
+        } else if (i == 0 && container.binary) {
+            range = container.bin;
+        } else {
+            document.buffers.emplace_back();  // a place for what an extension decodes
+            continue;
+        }
+        const uint64_t wanted = length->get<uint64_t>();
+        if (wanted > range.size)
+            here.fail(std::to_string(range.size) + " bytes of " + std::to_string(wanted) + " are there" + (uri.empty() ? "" : " in " + quote(uri)),
+                      "the data is truncated, export or download it again");
+        document.buffers.push_back({range.data, size_t(wanted)});
+    }
+}
+
+void list_images(const Place& place, const std::vector<json>& images) {
+    for (size_t i = 0; i < images.size(); ++i) {
+        tinygltf::Image& image = place.document->model.images.emplace_back();
+        const json& in = images[i];
+        if (!in.is_object()) place.fail("image " + std::to_string(i) + " is not an object", "export the file again");
+        image.name = text(in, "name");
+        image.uri = text(in, "uri");
+        image.mimeType = text(in, "mimeType");
+        if (const auto view = in.find("bufferView"); view != in.end() && view->is_number_integer()) image.bufferView = view->get<int>();
+    }
 }
 
 // One sentence of whatever a library reported, which may be several lines.
@@ -143,30 +172,42 @@ std::string one_line(std::string text) {
 
 }  // namespace
 
-tinygltf::Model read_model(const std::string& path, std::string& warnings) {
-    tinygltf::Model model;
-    std::string error;
-    bool ok = false;
-    Container container = take_apart(path, read_file(path));
+Document read_document(const std::string& path, std::string& warnings) try {
+    Document document;
+    document.file = path;
+    document.folder = std::filesystem::path(path).parent_path().string();
+    const Bytes& bytes = document.owned.emplace_back(read_file(path));
+    document.budget.earn(bytes.size());
+    const Container container = take_apart(path, bytes);
     check_depth(path, container.json);
-    strip_draco_indices(path, container.json);
-    const std::string folder = std::filesystem::path(path).parent_path().string();
-    tinygltf::TinyGLTF loader;
-    loader.SetImageLoader(keep_encoded, nullptr);
+
+    const auto unreadable = [&](const std::string& why) {
+        return InputError(path + ": this is not a readable glTF file (" + one_line(why) + "); check or export it again.");
+    };
+    std::string text, error;
+    std::vector<json> buffers, images;
+    bool ok = false;
     try {
-        if (container.binary) {
-            const Bytes glb = put_together(container);
-            ok = loader.LoadBinaryFromMemory(&model, &error, &warnings, glb.data(), unsigned(glb.size()), folder);
-        } else {
-            ok = loader.LoadASCIIFromString(&model, &error, &warnings, container.json.data(), unsigned(container.json.size()), folder);
-        }
+        json root = json::parse(container.json);
+        buffers = take(root, "buffers"), images = take(root, "images");
+        strip_draco_indices(root);
+        text = root.dump();
+        root = nullptr;
+        tinygltf::TinyGLTF loader;
+        loader.SetFsCallbacks({nullptr, nullptr, nullptr, nullptr, nullptr});
+        ok = loader.LoadASCIIFromString(&document.model, &error, &warnings, text.data(), unsigned(text.size()), "");
     } catch (const std::bad_alloc&) {
-        throw OutOfMemory(path + ": the file asks for more memory than there is; check the sizes in it.");
+        throw;
     } catch (const std::exception& e) {  // nlohmann's, from values of an unexpected type; and vector::at
-        ok = false, error = e.what();
+        error = e.what();
     }
-    if (!ok) throw InputError(path + ": this is not a readable glTF file (" + one_line(error) + "); check or export it again.");
-    return model;
+    if (!ok) throw unreadable(error);
+    const Place place{document.model, path, "", &document};
+    read_buffers(place, buffers, container);
+    list_images(place, images);
+    return document;
+} catch (const std::bad_alloc&) {
+    throw OutOfMemory(path + ": the file asks for more memory than there is; check the sizes in it.");
 }
 
 }  // namespace myriad::scenes::gltf

@@ -1,8 +1,6 @@
 #include "scenes/gltf/draco.hpp"
 
-#include <exception>
-
-#include <draco/compression/decode.h>
+#include "scenes/gltf/draco_mesh.hpp"
 
 namespace myriad::scenes::gltf {
 namespace {
@@ -16,6 +14,7 @@ std::vector<Vector> attribute(const Place& place, const draco::Mesh& mesh, const
     constexpr int components = Vector::length();
     if (!found || found->num_components() != components)
         place.fail(std::string("the compressed data has no usable ") + name, "compress the file again");
+    place.spend(mesh.num_points(), sizeof(Vector));
     std::vector<Vector> out(mesh.num_points());
     for (draco::PointIndex p(0); p < mesh.num_points(); ++p)
         // Converts from the stored type, quantised integers included; false on an index outside of the attribute.
@@ -31,25 +30,14 @@ Primitive decode_draco(const Place& outer, const tinygltf::Value& extension) {
     if (!extension.IsObject() || !extension.Has("bufferView") || !extension.Get("bufferView").IsInt() || !extension.Has("attributes"))
         place.fail("bufferView or attributes are missing", "compress the file again");
     const Range range = buffer_view(place, extension.Get("bufferView").Get<int>());
-    draco::DecoderBuffer buffer;
-    buffer.Init(reinterpret_cast<const char*>(range.data), range.size);
-    std::unique_ptr<draco::Mesh> mesh;
-    std::string problem;
-    try {
-        draco::Decoder decoder;
-        auto result = decoder.DecodeMeshFromBuffer(&buffer);
-        if (result.ok()) mesh = std::move(result).value();
-        else problem = result.status().error_msg_string();
-    } catch (const std::exception& e) {  // a damaged stream can ask for any amount of memory
-        problem = e.what();
-    }
-    if (!mesh) place.fail("the data cannot be decoded (" + problem + ")", "compress the file again");
+    const std::unique_ptr<draco::Mesh> mesh = decode_draco_mesh(place, range);
 
     const tinygltf::Value& ids = extension.Get("attributes");
     Primitive out;
     out.positions = attribute<glm::vec3>(place, *mesh, ids, "POSITION");
     out.normals = attribute<glm::vec3>(place, *mesh, ids, "NORMAL");
     out.texcoords = attribute<glm::vec2>(place, *mesh, ids, "TEXCOORD_0");
+    place.spend(mesh->num_faces(), 3 * sizeof(uint32_t));
     out.indices.reserve(size_t(mesh->num_faces()) * 3);
     for (draco::FaceIndex f(0); f < mesh->num_faces(); ++f)
         for (const auto& point : mesh->face(f)) out.indices.push_back(point.value());

@@ -4,38 +4,12 @@
 #include <map>
 
 #include "engine/error.hpp"
+#include "scenes/gltf/image.hpp"
 
 namespace myriad::scenes::gltf {
 namespace {
 
 float factor(double value) { return float(std::clamp(value, 0.0, 1.0)); }
-
-// RGBA8. 16-bit channels keep their high byte, rounded.
-void decode(const Place& place, const tinygltf::Image& image, Texture& out) {
-    Range bytes{image.image.data(), image.image.size()};
-    if (image.bufferView >= 0) bytes = buffer_view(place, image.bufferView);
-    if (bytes.size == 0) place.fail("the file \"" + image.uri + "\" cannot be read", "put it beside the glTF file");
-    if (bytes.size > 0x7fffffff) place.fail("the image is larger than 2 GiB", "scale it down");
-    tinygltf::Image decoded;
-    std::string error, warning;
-    bool ok = false;
-    try {
-        ok = tinygltf::LoadImageData(&decoded, 0, &error, &warning, 0, 0, bytes.data, int(bytes.size), nullptr);
-    } catch (const std::exception&) {  // a damaged header can ask for any amount of memory
-    }
-    if (!ok || decoded.component != 4) place.fail("the image cannot be decoded", "store it as PNG or JPEG");
-    out.width = uint32_t(decoded.width);
-    out.height = uint32_t(decoded.height);
-    const size_t channels = size_t(out.width) * out.height * 4;
-    if (decoded.bits == 16) {
-        const auto* wide = reinterpret_cast<const uint16_t*>(decoded.image.data());
-        out.rgba.resize(channels);
-        for (size_t i = 0; i < channels; ++i) out.rgba[i] = uint8_t((uint32_t(wide[i]) * 255 + 32767) / 65535);
-    } else {
-        out.rgba = std::move(decoded.image);
-    }
-    if (out.rgba.size() != channels) place.fail("the image cannot be decoded", "store it as PNG or JPEG");
-}
 
 Texture::Wrap wrap(int mode) {
     if (mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return Texture::Wrap::clamp;
@@ -69,7 +43,9 @@ public:
             out.wrap_u = wrap(sampler.wrapS);
             out.wrap_v = wrap(sampler.wrapT);
         }
-        decode(here.at("image " + std::to_string(texture.source)), image, out);
+        Picture picture = read_image(here, texture.source);
+        out.width = picture.width, out.height = picture.height;
+        out.rgba = std::move(picture.rgba);
         scene_.textures.push_back(std::move(out));
         return numbers_[info.index] = uint32_t(scene_.textures.size() - 1);
     }
