@@ -96,13 +96,14 @@ protected:
 
 TEST_F(command_line, help_names_every_option) {
     const std::map<std::string, Arguments> options = {
-        {"", {"render", "compare", "bench", "info", "--version"}},
+        {"", {"render", "convert", "compare", "bench", "info", "--version"}},
         {"render", {"SCENE",     "--output",   "--png",  "--size",    "--camera",  "--seed",    "--visibility", "--append",
                     "--vpls",    "--bounces",  "--map-size",          "--epsilon", "--samples", "--gather",     "--filter",
                     "--vpl-bound", "--bias",   "--exposure",          "--memory-limit",         "--stats",      "--trace",
                     "--aov",     "--device",   "--repeat", "--float", "--quiet",   "1:1",       "builtin:cornell", "W/sr"}},
         {"compare", {"REF", "TEST", "--json", "--fail-above", "--fail-below", "--layer", "--diff", "--tolerance"}},
         {"bench", {"--json"}},
+        {"convert", {"IN", "OUT", "--unit", "--up", "--crease", "--seed", "--quiet", ".gltf", ".glb", "builtin:NAME"}},
         {"info", {"--json", "--device"}}};
     for (const auto& [command, names] : options) {
         succeed(command.empty() ? Arguments{"-h"} : Arguments{command, "-h"});
@@ -316,6 +317,37 @@ TEST_F(command_line, compare) {
     EXPECT_EQ(o.status, 1) << o.err;
     EXPECT_EQ(o.error_lines(), 1) << o.err;
     EXPECT_GT(nlohmann::json::parse(o.out)["MSE"], 0);
+}
+
+TEST_F(command_line, convert) {
+    succeed({"convert", "builtin:cornell", folder / "a.glb"});
+    EXPECT_TRUE(contains(last.out, "1776 triangles")) << last.out;
+    EXPECT_EQ(std::ranges::count(last.out, '\n'), 1);
+    succeed({"convert", folder / "a.glb", folder / "b.glb", "--unit", "ft", "--up", "z", "--quiet"});
+    EXPECT_EQ(last.out, "");
+    succeed({"convert", folder / "a.glb", folder / "c.glb", "--unit", "0.3048", "--up", "z"});
+    EXPECT_TRUE(contains(last.out, "1.74 x 1.71 x 1.74 m")) << last.out;
+    EXPECT_TRUE(bytes_of(folder / "b.glb") == bytes_of(folder / "c.glb"));
+    EXPECT_EQ(folder.names(), (std::vector<std::string>{"a.glb", "b.glb", "c.glb"}));
+}
+
+TEST_F(command_line, convert_refuses) {
+    const std::string glb = folder / "a.glb";
+    const TempFolder other;
+    put(other / "bad.glb", "not a glTF file");
+    put(other / "scene.xyz", "");
+    refuse(2, {"convert"}, "IN is required");
+    refuse(2, {"convert", "builtin:cornell"}, "OUT is required");
+    refuse(2, {"convert", "builtin:cornell", folder / "a.gltf"}, "let the name end in .glb");
+    refuse(2, {"convert", "none.glb", folder / "none/a.glb"}, "does not exist; create it");  // before the scene is read
+    refuse(2, {"convert", other / "none.glb", glb}, "there is no such file");
+    refuse(2, {"convert", other / "scene.xyz", glb}, "give one of .gltf, .glb");
+    refuse(2, {"convert", other / "bad.glb", glb}, "bad.glb");
+    for (const char* unit : {"0", "-1", "nan", "mile", ""}) refuse(2, {"convert", "builtin:cornell", glb, "--unit", unit}, "mm, cm, m, in, ft");
+    refuse(2, {"convert", "builtin:cornell", glb, "--up", "w"}, "x, y, z");
+    refuse(2, {"convert", "builtin:cornell", glb, "--crease", "181"}, "--crease");
+    put(other / "empty.gltf", R"({"asset": {"version": "2.0"}})");
+    refuse(2, {"convert", other / "empty.gltf", glb}, "nothing in it");
 }
 
 TEST_F(command_line, interrupted_in_the_middle) {

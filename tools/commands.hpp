@@ -21,5 +21,6 @@ void add_render(CLI::App& app);
 void add_bench(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_info(CLI::App& app);
+void add_convert(CLI::App& app);
 
 }  // namespace myriad::tools

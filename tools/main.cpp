@@ -40,6 +40,7 @@ int run(int argc, char** argv) {
     app.require_subcommand(0, 1);
     add_render(app);
     add_compare(app);
+    add_convert(app);
     add_bench(app);
     add_info(app);
     try {

@@ -1,0 +1,75 @@
+#include "scenes/import/import.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <new>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "engine/error.hpp"
+#include "scenes/gltf.hpp"
+#include "scenes/import/tidy.hpp"
+
+namespace myriad::scenes {
+namespace {
+
+Imported read_gltf(const std::string& path, const ImportOptions&) {
+    return {.scene = load_gltf(path), .crease = 0};  // glTF says that what has no normals is flat
+}
+
+std::string lower(std::string text) {
+    for (char& c : text) c = char(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+}
+
+const Format& format_of(const std::string& path) {
+    const std::string name = lower(std::filesystem::path(path).filename().string());
+    const Format* found = nullptr;
+    size_t length = 0;
+    std::string known;
+    for (const Format& format : formats())
+        for (const std::string& ending : format.endings) {
+            known += (known.empty() ? "" : ", ") + ending;
+            if (name.ends_with(ending) && ending.size() > length) found = &format, length = ending.size();  // the longest: .ply.gz
+        }
+    if (!found) throw InputError(path + ": no format that Myriad reads has this ending; give one of " + known + ".");
+    return *found;
+}
+
+// Turns the file's axes so that `up` points along +Y, by a rotation: what was seen mirrored stays so, and no more.
+glm::dmat4 upright(Axis up) {
+    if (up == Axis::x) return glm::rotate(glm::dmat4(1), glm::radians(90.0), glm::dvec3(0, 0, 1));
+    if (up == Axis::z) return glm::rotate(glm::dmat4(1), glm::radians(-90.0), glm::dvec3(1, 0, 0));
+    return glm::dmat4(1);
+}
+
+}  // namespace
+
+const std::vector<Format>& formats() {
+    static const std::vector<Format> list = {
+        {{".gltf", ".glb"}, "glTF 2.0", read_gltf},
+    };
+    return list;
+}
+
+Scene import_scene(const std::string& source, const ImportOptions& options, uint32_t seed) try {
+    Imported in;
+    if (source.starts_with("builtin:")) {
+        in.scene = load(source, seed);
+        in.crease = 0;
+    } else {
+        const Format& format = format_of(source);
+        std::error_code error;
+        if (!std::filesystem::is_regular_file(source, error)) throw InputError(source + ": there is no such file; give one that exists.");
+        in = format.read(source, options);
+    }
+    in.scene.name = source;
+    transform(in.scene, upright(options.up.value_or(in.up)), options.unit.value_or(in.unit));
+    tidy(in.scene, options.crease.value_or(in.crease));
+    return std::move(in.scene);
+} catch (const std::bad_alloc&) {
+    throw OutOfMemory(source + ": the scene does not fit in memory; make it smaller.");
+}
+
+}  // namespace myriad::scenes

@@ -1,0 +1,24 @@
+// What every imported scene goes through, whatever it came from.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "scenes/scene.hpp"
+
+namespace myriad::scenes {
+
+// Everything in the scene is turned by `rotation` and scaled by `scale`. Intensities stay: they are what a file says.
+void transform(Scene& scene, const glm::dmat4& rotation, double scale);
+
+// Makes the scene sound, so that it can be written and rendered: leaves out triangles that have no area or a corner that
+// is not finite, vertices and meshes and textures and materials that nothing uses; repairs normals, tangents, texture
+// coordinates and colours that are not finite, and makes normals unit. What was defective is counted in scene.warnings.
+// Primitives without normals get them: smooth over edges that turn by less than `crease` degrees; 0 leaves them flat.
+// Indices must be in range.
+void tidy(Scene& scene, float crease);
+
+// The normals of a primitive that has none, smooth over edges that turn by less than `crease` degrees. Corners at one
+// place count as one whether they are one vertex or not; a vertex that needs two normals becomes two.
+void smooth_normals(Primitive& primitive, float crease);
+
+}  // namespace myriad::scenes
