@@ -12,8 +12,8 @@
 #include "engine/error.hpp"
 #include "scenes/gltf/accessor.hpp"
 #include "scenes/gltf/container.hpp"
-#include "scenes/gltf/draco.hpp"
 #include "scenes/gltf/material.hpp"
+#include "scenes/gltf/mesh.hpp"
 
 namespace myriad::scenes {
 namespace {
@@ -22,7 +22,7 @@ using gltf::Place;
 
 constexpr const char* lights_extension = "KHR_lights_punctual";
 constexpr std::array supported_extensions = {"KHR_draco_mesh_compression", lights_extension, "KHR_materials_emissive_strength",
-                                             "KHR_mesh_quantization"};
+                                             "KHR_materials_unlit", "KHR_mesh_quantization", "KHR_texture_transform"};
 
 bool supported(const std::string& extension) {
     return std::find(supported_extensions.begin(), supported_extensions.end(), extension) != supported_extensions.end();
@@ -35,111 +35,6 @@ void check_extensions(const Place& place, Scene& scene) {
     for (const auto& name : place.model.extensionsUsed)
         if (!supported(name)) ignored += (ignored.empty() ? "" : ", ") + name;
     if (!ignored.empty()) scene.warnings.push_back("ignored extensions: " + ignored + ".");
-}
-
-// Strips and fans become triangle lists; in a strip every second triangle turns around.
-std::vector<uint32_t> as_list(const std::vector<uint32_t>& in, int mode) {
-    if (mode == TINYGLTF_MODE_TRIANGLES) return in;
-    std::vector<uint32_t> out;
-    for (size_t i = 2; i < in.size(); ++i) {
-        const bool fan = mode == TINYGLTF_MODE_TRIANGLE_FAN, odd = i % 2;
-        const uint32_t a = fan ? in[0] : in[i - 2], b = in[i - 1], c = in[i];
-        if (fan) out.insert(out.end(), {b, c, a});  // the order that the specification gives
-        else out.insert(out.end(), {a, odd ? c : b, odd ? b : c});
-    }
-    return out;
-}
-
-// Keeps only the vertices that are used: exporters let many primitives share one big vertex buffer.
-void compact(Primitive& p) {
-    if (p.positions.size() <= p.indices.size()) return;
-    std::vector<uint32_t> number(p.positions.size(), none);
-    Primitive out;
-    out.material = p.material;
-    for (uint32_t i : p.indices) {
-        if (number[i] == none) {
-            number[i] = uint32_t(out.positions.size());
-            out.positions.push_back(p.positions[i]);
-            if (!p.normals.empty()) out.normals.push_back(p.normals[i]);
-            if (!p.texcoords.empty()) out.texcoords.push_back(p.texcoords[i]);
-        }
-        out.indices.push_back(number[i]);
-    }
-    p = std::move(out);
-}
-
-template <class Vector>
-std::vector<Vector> attribute(const Place& place, const tinygltf::Primitive& in, const char* name) {
-    const auto it = in.attributes.find(name);
-    if (it == in.attributes.end()) return {};
-    const std::vector<float> values = gltf::read_floats(place.at(name), it->second, Vector::length());
-    std::vector<Vector> out(values.size() / size_t(Vector::length()));
-    for (size_t i = 0; i < out.size(); ++i)
-        for (int c = 0; c < Vector::length(); ++c) out[i][c] = values[i * size_t(Vector::length()) + size_t(c)];
-    return out;
-}
-
-Primitive read_primitive(const Place& place, const tinygltf::Primitive& in) {
-    Primitive out;
-    if (const auto draco = in.extensions.find(gltf::draco_extension); draco != in.extensions.end()) {
-        out = gltf::decode_draco(place, draco->second);
-    } else {
-        out.positions = attribute<glm::vec3>(place, in, "POSITION");
-        out.normals = attribute<glm::vec3>(place, in, "NORMAL");
-        out.texcoords = attribute<glm::vec2>(place, in, "TEXCOORD_0");
-        if (in.indices >= 0) {
-            out.indices = gltf::read_indices(place.at("indices"), in.indices);
-        } else {
-            out.indices.resize(out.positions.size());
-            for (size_t i = 0; i < out.indices.size(); ++i) out.indices[i] = uint32_t(i);
-        }
-        out.indices = as_list(out.indices, in.mode);
-    }
-    if (out.positions.empty()) place.fail("POSITION is missing or empty", "export the mesh with positions");
-    for (const auto& [name, size] : {std::pair("NORMAL", out.normals.size()), {"TEXCOORD_0", out.texcoords.size()}})
-        if (size && size != out.positions.size())
-            place.fail("there are " + std::to_string(size) + " of " + name + " but " + std::to_string(out.positions.size()) + " of POSITION",
-                       "export the file again");
-    if (out.indices.size() % 3) place.fail("the number of indices is not a multiple of 3", "export the mesh as triangles");
-    for (uint32_t i : out.indices)
-        if (i >= out.positions.size())
-            place.fail("index " + std::to_string(i) + " is out of range, there are " + std::to_string(out.positions.size()) + " vertices",
-                       "export the file again");
-    if (in.material >= 0 && size_t(in.material) >= place.model.materials.size())
-        place.fail("there is no material " + std::to_string(in.material), "export the file again");
-    out.material = in.material >= 0 ? uint32_t(in.material) : none;
-    compact(out);
-    return out;
-}
-
-void read_meshes(const Place& place, Scene& scene) {
-    size_t lines = 0, morphed = 0;
-    bool default_material = scene.materials.empty();
-    for (size_t m = 0; m < place.model.meshes.size(); ++m) {
-        const auto& in = place.model.meshes[m];
-        const std::string name = "mesh " + std::to_string(m) + " \"" + in.name + "\"";
-        Mesh mesh;
-        mesh.name = in.name;
-        for (size_t p = 0; p < in.primitives.size(); ++p) {
-            const int mode = in.primitives[p].mode;
-            if (mode < TINYGLTF_MODE_TRIANGLES || mode > TINYGLTF_MODE_TRIANGLE_FAN) {
-                ++lines;
-                continue;
-            }
-            morphed += !in.primitives[p].targets.empty();
-            mesh.primitives.push_back(read_primitive(place.at(name + " primitive " + std::to_string(p)), in.primitives[p]));
-            default_material |= mesh.primitives.back().material == none;
-        }
-        scene.meshes.push_back(std::move(mesh));
-    }
-    if (default_material) {  // glTF's: white, metallic 1, roughness 1, which is what Material starts as
-        scene.materials.push_back({.name = "default"});
-        for (auto& mesh : scene.meshes)
-            for (auto& primitive : mesh.primitives)
-                if (primitive.material == none) primitive.material = uint32_t(scene.materials.size() - 1);
-    }
-    if (lines) scene.warnings.push_back(std::to_string(lines) + " primitives made of points or lines were left out.");
-    if (morphed) scene.warnings.push_back(std::to_string(morphed) + " primitives with morph targets are shown in their base shape.");
 }
 
 glm::mat4 local_transform(const Place& place, const tinygltf::Node& node) {
@@ -280,7 +175,7 @@ Scene load_gltf(const std::string& path) try {
     const Place place{model, path, "", &document};
     check_extensions(place, scene);
     gltf::read_materials(place, scene);
-    read_meshes(place, scene);
+    gltf::read_meshes(place, scene);
     Walk(place, scene).run();
     if (!model.skins.empty()) scene.warnings.push_back("skins are ignored: meshes are shown in their rest pose.");
     if (!model.animations.empty()) scene.warnings.push_back("animations are ignored.");

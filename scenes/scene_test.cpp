@@ -121,6 +121,89 @@ TEST(Flatten, CleansDenormalsAndBadNormals) {
     EXPECT_EQ(scene.warnings.size(), 2u);
 }
 
+// A second triangle without the attribute makes both defaults and padding visible.
+Scene with_and_without(const mat4& to_world) {
+    Scene scene = one_triangle(true, to_world);
+    scene.meshes[0].primitives.push_back(scene.meshes[0].primitives[0]);
+    return scene;
+}
+
+TEST(Flatten, AttributesThatNobodyHasStayEmpty) {
+    Scene scene = one_triangle(true);
+    const Triangles t = flatten(scene);
+    EXPECT_TRUE(t.colors.empty() && t.texcoords1.empty() && t.tangents.empty());
+    EXPECT_EQ(t.texcoords.size(), 3u);
+}
+
+TEST(Flatten, ColorsAndSecondSetWithDefaults) {
+    for (bool normals : {false, true}) {
+        Scene scene = with_and_without(mat4(1));
+        auto& p = scene.meshes[0].primitives;
+        if (!normals) p[0].normals.clear(), p[1].normals.clear();
+        p[0].texcoords = {{1, 2}, {3, 4}, {5, 6}};
+        p[1].colors = {{.1f, .2f, .3f, .4f}, {2, -1, 0.5f, 1}, {1, std::numeric_limits<float>::quiet_NaN(), 0, 0}};
+        p[1].texcoords1 = {{7, 8}, {9, std::numeric_limits<float>::infinity()}, {-1, 0}};
+        const Triangles t = flatten(scene);
+        ASSERT_EQ(t.colors.size(), 6u);
+        ASSERT_EQ(t.texcoords1.size(), 6u);
+        const auto first = t.triangles[0], second = t.triangles[1];
+        EXPECT_EQ(t.colors[first.x], glm::vec4(1));
+        EXPECT_EQ(t.colors[second.x], glm::vec4(.1f, .2f, .3f, .4f));
+        EXPECT_EQ(t.colors[second.y], glm::vec4(1, 0, 0.5f, 1));  // clamped, as glTF says
+        EXPECT_EQ(t.colors[second.z], glm::vec4(1));
+        EXPECT_EQ(t.texcoords1[first.z], glm::vec2(5, 6));  // a primitive without a second set: the first
+        EXPECT_EQ(t.texcoords1[second.x], glm::vec2(7, 8));
+        EXPECT_EQ(t.texcoords1[second.y], glm::vec2(0));
+        EXPECT_EQ(t.texcoords[second.x], glm::vec2(0));
+        ASSERT_EQ(scene.warnings.size(), 2u);
+        EXPECT_NE(scene.warnings[0].find("1 non-finite texture coordinates"), std::string::npos);
+        EXPECT_NE(scene.warnings[1].find("1 non-finite vertex colours"), std::string::npos);
+    }
+}
+
+TEST(Flatten, TangentsGoWithTheSurface) {
+    // A shear and a stretch: the tangent stays in the surface, perpendicular to the transformed normal.
+    mat4 m = glm::scale(mat4(1), vec3(2, 3, 0.5f));
+    m[0].z = 1;  // x goes to (2, 0, 1)
+    Scene scene = with_and_without(m);
+    auto& p = scene.meshes[0].primitives;
+    p[0].tangents.assign(3, {1, 0, 0, -1});
+    const Triangles t = flatten(scene);
+    ASSERT_EQ(t.tangents.size(), 6u);
+    const glm::vec4 tangent = t.tangents[t.triangles[0].x];
+    expect_near(vec3(tangent), glm::normalize(vec3(2, 0, 1)));
+    EXPECT_EQ(tangent.w, -1);
+    EXPECT_NEAR(glm::dot(vec3(tangent), t.normals[t.triangles[0].x]), 0, 1e-6f);
+    EXPECT_EQ(vec3(t.tangents[t.triangles[1].x]), vec3(0));
+}
+
+// Whatever the instance does, cross(normal, tangent) * w must be where the instance takes the bitangent of the mesh.
+TEST(Flatten, BitangentsSurviveMirrors) {
+    const vec3 n = glm::normalize(vec3(1, 2, 3)), t = glm::normalize(glm::cross(n, vec3(0, 1, 0)));
+    for (const vec3 s : {vec3(1), vec3(-1, 1, 1), vec3(1, -1, 1), vec3(1, 1, -1), vec3(-1, -1, 1), vec3(-1)})
+        for (float w : {1.0f, -1.0f}) {
+            const mat4 m = glm::rotate(mat4(1), 0.7f, vec3(1, 1, 0)) * glm::scale(mat4(1), s);
+            Scene scene = one_triangle(true, m);
+            scene.meshes[0].primitives[0].normals.assign(3, n);
+            scene.meshes[0].primitives[0].tangents.assign(3, glm::vec4(t, w));
+            const Triangles out = flatten(scene);
+            const glm::vec4 tangent = out.tangents[0];
+            expect_near(glm::cross(out.normals[0], vec3(tangent)) * tangent.w, glm::mat3(m) * (glm::cross(n, t) * w));
+        }
+}
+
+TEST(Flatten, TangentsWithoutNormalsOrLengthAreNone) {
+    Scene scene = one_triangle(false);
+    scene.meshes[0].primitives[0].tangents.assign(3, {1, 0, 0, 1});
+    EXPECT_TRUE(flatten(scene).tangents.empty());  // glTF: they mean nothing beside computed normals
+    scene = one_triangle(true);
+    scene.meshes[0].primitives[0].tangents = {{0, 0, 0, 1}, {std::numeric_limits<float>::quiet_NaN(), 0, 0, 1}, {1, 0, 0, 1}};
+    const Triangles t = flatten(scene);
+    EXPECT_EQ(vec3(t.tangents[0]), vec3(0));
+    EXPECT_EQ(vec3(t.tangents[1]), vec3(0));
+    expect_near(vec3(t.tangents[2]), {1, 0, 0});
+}
+
 TEST(Flatten, KeepsZeroAreaTrianglesWithUnitNormals) {
     for (bool normals : {false, true}) {
         Scene scene = one_triangle(normals, glm::scale(mat4(1), vec3(0)));  // a singular instance

@@ -1,14 +1,14 @@
 // KHR_draco_mesh_compression, decoded here because Debian builds tinygltf without Draco.
 #pragma once
 
-#include "scenes/gltf/accessor.hpp"
+#include "scenes/gltf/value.hpp"
 #include "scenes/scene.hpp"
 
 namespace myriad::scenes::gltf {
 
 inline constexpr const char* draco_extension = "KHR_draco_mesh_compression";
 
-// Positions, normals, texture coordinates and indices of a Draco primitive; indices may still be out of range.
-Primitive decode_draco(const Place& place, const tinygltf::Value& extension);
+// Attributes and indices of a Draco primitive; indices may still be out of range.
+Primitive decode_draco(const Place& place, const tinygltf::Primitive& primitive, const tinygltf::Value& extension);
 
 }  // namespace myriad::scenes::gltf

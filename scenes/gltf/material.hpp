@@ -1,4 +1,4 @@
-// Materials and textures.
+// Materials.
 #pragma once
 
 #include "scenes/gltf/accessor.hpp"
@@ -6,8 +6,7 @@
 
 namespace myriad::scenes::gltf {
 
-// Fills scene.materials and scene.textures: one texture for each glTF texture that a material uses as colour,
-// metallic-roughness or emission (normal and occlusion maps are not rendered, and so not decoded).
+// Fills scene.materials, and scene.textures with what the materials use. Occlusion maps are not read: occlusion is what is rendered.
 void read_materials(const Place& place, Scene& scene);
 
 }  // namespace myriad::scenes::gltf

@@ -1,0 +1,221 @@
+// Instances to world-space triangles, with every defect that a vertex can have repaired and counted.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/error.hpp"
+#include "scenes/scene.hpp"
+
+namespace myriad::scenes {
+namespace {
+
+constexpr glm::vec3 up{0, 1, 0};
+
+template <int n>
+bool finite(const glm::vec<n, float>& v) {
+    for (int i = 0; i < n; ++i)
+        if (!std::isfinite(v[i])) return false;
+    return true;
+}
+
+// Denormal coordinates become 0: devices may flush them, and host and device must see the same scene.
+bool flush_denormals(glm::vec3& v) {
+    bool any = false;
+    for (int i = 0; i < 3; ++i)
+        if (std::fpclassify(v[i]) == FP_SUBNORMAL) v[i] = 0, any = true;
+    return any;
+}
+
+// The unit vector of `v`, or `fallback` where there is none. In double: squares of float coordinates overflow at 1e19.
+glm::vec3 unit_or(const glm::dvec3& v, const glm::vec3& fallback) {
+    const double length = glm::length(v);
+    return length > 0 && std::isfinite(length) ? glm::vec3(v / length) : fallback;
+}
+
+glm::dvec3 face_normal(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+    const glm::dvec3 o(a);
+    return glm::cross(glm::dvec3(b) - o, glm::dvec3(c) - o);
+}
+
+// Normals transform by the cofactor matrix: the inverse transpose times the determinant, so it needs no division and
+// stays right for flattened (singular) instances; the sign of the determinant is put back by the caller.
+glm::dmat3 cofactors(const glm::dmat3& m) {
+    return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
+}
+
+// Which of the attributes that a primitive may lack the scene has: those vectors are filled for every vertex.
+struct Attributes {
+    bool colors = false, texcoords1 = false, tangents = false;
+};
+
+struct Defects {
+    size_t dropped = 0, denormal = 0, bad_normals = 0, bad_texcoords = 0, bad_colors = 0;
+};
+
+// Appends one primitive of one instance.
+class Flattener {
+public:
+    Flattener(Triangles& out, const Attributes& attributes, Defects& defects) : out_(out), attributes_(attributes), defects_(defects) {}
+
+    void append(const Primitive& primitive, const glm::mat4& to_world) {
+        transform(primitive, to_world);
+        if (primitive.normals.empty()) flat(primitive);
+        else smooth(primitive);
+    }
+
+private:
+    void transform(const Primitive& primitive, const glm::mat4& to_world) {
+        linear_ = glm::dmat3(to_world);
+        mirrored_ = glm::determinant(linear_) < 0;
+        world_.resize(primitive.positions.size());
+        usable_.resize(world_.size());
+        for (size_t i = 0; i < world_.size(); ++i) {
+            world_[i] = glm::vec3(to_world * glm::vec4(primitive.positions[i], 1));
+            usable_[i] = finite(world_[i]);
+            defects_.denormal += flush_denormals(world_[i]);
+        }
+    }
+
+    // The corners of triangle `t`, counter-clockwise as seen from its front in the world.
+    glm::uvec3 corners(const Primitive& primitive, size_t t) const {
+        const uint32_t* i = &primitive.indices[3 * t];
+        return mirrored_ ? glm::uvec3(i[0], i[2], i[1]) : glm::uvec3(i[0], i[1], i[2]);
+    }
+
+    bool keep(const glm::uvec3& c) {
+        const bool ok = usable_[c.x] && usable_[c.y] && usable_[c.z];
+        defects_.dropped += !ok;
+        return ok;
+    }
+
+    glm::vec2 texcoord(const std::vector<glm::vec2>& set, uint32_t i) {
+        if (set.empty()) return glm::vec2(0);
+        if (finite(set[i])) return set[i];
+        ++defects_.bad_texcoords;
+        return glm::vec2(0);
+    }
+
+    glm::vec4 color(const Primitive& primitive, uint32_t i) {
+        if (primitive.colors.empty()) return glm::vec4(1);
+        if (finite(primitive.colors[i])) return glm::clamp(primitive.colors[i], 0.0f, 1.0f);
+        ++defects_.bad_colors;
+        return glm::vec4(1);
+    }
+
+    // A tangent lies in the surface and goes with it, unlike a normal. Where the instance mirrors, normal x tangent turns
+    // around, and w undoes that.
+    glm::vec4 tangent(const Primitive& primitive, uint32_t i) const {
+        if (primitive.tangents.empty() || primitive.normals.empty()) return glm::vec4(0, 0, 0, 1);
+        const glm::vec4& t = primitive.tangents[i];
+        return glm::vec4(unit_or(linear_ * glm::dvec3(t), glm::vec3(0)), (t.w < 0) != mirrored_ ? -1 : 1);
+    }
+
+    // Vertex `i` of `primitive`, with this normal. An unusable one keeps its number, so that indices stay as they are; no
+    // triangle refers to it.
+    void vertex(const Primitive& primitive, uint32_t i, const glm::vec3& normal) {
+        out_.positions.push_back(usable_[i] ? world_[i] : glm::vec3(0));
+        out_.normals.push_back(normal);
+        out_.texcoords.push_back(texcoord(primitive.texcoords, i));
+        if (attributes_.colors) out_.colors.push_back(color(primitive, i));
+        if (attributes_.texcoords1)
+            out_.texcoords1.push_back(primitive.texcoords1.empty() ? out_.texcoords.back() : texcoord(primitive.texcoords1, i));
+        if (attributes_.tangents) out_.tangents.push_back(tangent(primitive, i));
+    }
+
+    void flat(const Primitive& primitive) {
+        for (size_t t = 0; 3 * t < primitive.indices.size(); ++t) {
+            const glm::uvec3 c = corners(primitive, t);
+            if (!keep(c)) continue;
+            const glm::vec3 n = unit_or(face_normal(world_[c.x], world_[c.y], world_[c.z]), up);
+            const uint32_t first = uint32_t(out_.positions.size());
+            for (int k = 0; k < 3; ++k) vertex(primitive, c[k], n);
+            out_.triangles.emplace_back(first, first + 1, first + 2, primitive.material);
+        }
+    }
+
+    void smooth(const Primitive& primitive) {
+        const uint32_t first = uint32_t(out_.positions.size());
+        const glm::dmat3 to_normal = cofactors(linear_) * (mirrored_ ? -1.0 : 1.0);
+        for (uint32_t i = 0; i < world_.size(); ++i)
+            vertex(primitive, i, unit_or(to_normal * glm::dvec3(primitive.normals[i]), glm::vec3(0)));
+        const size_t first_triangle = out_.triangles.size();
+        for (size_t t = 0; 3 * t < primitive.indices.size(); ++t)
+            if (const glm::uvec3 c = corners(primitive, t); keep(c)) out_.triangles.emplace_back(c + first, primitive.material);
+        repair_normals(first, first_triangle);
+    }
+
+    // A zero or non-finite normal is replaced by the area-weighted mean of the faces around the vertex.
+    void repair_normals(uint32_t first, size_t first_triangle) {
+        std::vector<glm::dvec3> sums;
+        for (size_t i = first; i < out_.normals.size(); ++i)
+            if (out_.normals[i] == glm::vec3(0)) sums.resize(out_.normals.size() - first);
+        if (sums.empty()) return;
+        for (size_t t = first_triangle; t < out_.triangles.size(); ++t) {
+            const glm::uvec4 c = out_.triangles[t];
+            const glm::dvec3 n = face_normal(out_.positions[c.x], out_.positions[c.y], out_.positions[c.z]);
+            for (int k = 0; k < 3; ++k) sums[c[k] - first] += n;
+        }
+        for (size_t i = 0; i < sums.size(); ++i)
+            if (auto& n = out_.normals[first + i]; n == glm::vec3(0)) n = unit_or(sums[i], up), ++defects_.bad_normals;
+    }
+
+    Triangles& out_;
+    const Attributes attributes_;
+    Defects& defects_;
+    glm::dmat3 linear_{1};
+    std::vector<glm::vec3> world_;
+    std::vector<bool> usable_;
+    bool mirrored_ = false;
+};
+
+void reserve(Triangles& out, const Attributes& attributes, size_t vertices, size_t triangles) {
+    out.positions.reserve(vertices);
+    out.normals.reserve(vertices);
+    out.texcoords.reserve(vertices);
+    if (attributes.colors) out.colors.reserve(vertices);
+    if (attributes.texcoords1) out.texcoords1.reserve(vertices);
+    if (attributes.tangents) out.tangents.reserve(vertices);
+    out.triangles.reserve(triangles);
+}
+
+}  // namespace
+
+Triangles flatten(Scene& scene) {
+    Triangles out;
+    Defects defects;
+    Attributes attributes;
+    size_t vertices = 0, triangles = 0;
+    for (const Instance& instance : scene.instances)
+        for (const Primitive& p : scene.meshes[instance.mesh].primitives) {
+            attributes.colors |= !p.colors.empty();
+            attributes.texcoords1 |= !p.texcoords1.empty();
+            attributes.tangents |= !p.tangents.empty() && !p.normals.empty();
+            vertices += p.normals.empty() ? p.indices.size() : p.positions.size();
+            triangles += p.indices.size() / 3;
+        }
+    if (vertices >= none || triangles >= none / 3)
+        throw InputError("the scene has more than 2^32 vertices; give fewer instances or coarser meshes.");
+    reserve(out, attributes, vertices, triangles);
+    Flattener flattener(out, attributes, defects);
+    for (const Instance& instance : scene.instances)
+        for (const Primitive& primitive : scene.meshes[instance.mesh].primitives)
+            flattener.append(primitive, instance.to_world);
+
+    // Bounds over what the triangles use: an unusable vertex was parked at the origin.
+    glm::vec3 lo(std::numeric_limits<float>::infinity()), hi(-lo);
+    for (const auto& t : out.triangles)
+        for (int k = 0; k < 3; ++k) lo = glm::min(lo, out.positions[t[k]]), hi = glm::max(hi, out.positions[t[k]]);
+    if (!out.triangles.empty()) out.lo = lo, out.hi = hi;
+
+    const auto warn = [&](size_t count, const char* what) {
+        if (count) scene.warnings.push_back(std::to_string(count) + what);
+    };
+    warn(defects.dropped, " triangles with a non-finite vertex were dropped.");
+    warn(defects.denormal, " vertices with a denormal coordinate had it set to 0.");
+    warn(defects.bad_normals, " zero or non-finite normals were computed anew.");
+    warn(defects.bad_texcoords, " non-finite texture coordinates were set to 0.");
+    warn(defects.bad_colors, " non-finite vertex colours were set to white.");
+    return out;
+}
+
+}  // namespace myriad::scenes

@@ -1,0 +1,135 @@
+#include "scenes/gltf/mesh.hpp"
+
+#include "scenes/gltf/draco.hpp"
+
+namespace myriad::scenes::gltf {
+namespace {
+
+// Strips and fans become triangle lists; in a strip every second triangle turns around. Triangles that name a vertex
+// twice, which join the parts of a strip, cover nothing and are left out.
+std::vector<uint32_t> as_list(const std::vector<uint32_t>& in, int mode) {
+    if (mode == TINYGLTF_MODE_TRIANGLES) return in;
+    std::vector<uint32_t> out;
+    for (size_t i = 2; i < in.size(); ++i) {
+        const bool fan = mode == TINYGLTF_MODE_TRIANGLE_FAN, odd = i % 2;
+        const uint32_t a = fan ? in[0] : in[i - 2], b = in[i - 1], c = in[i];
+        if (a == b || b == c || c == a) continue;
+        if (fan) out.insert(out.end(), {b, c, a});  // the order that the specification gives
+        else out.insert(out.end(), {a, odd ? c : b, odd ? b : c});
+    }
+    return out;
+}
+
+// Applies `f` to the vector of each attribute in two primitives.
+template <class F>
+void each_attribute(Primitive& a, const Primitive& b, F&& f) {
+    f(a.positions, b.positions), f(a.normals, b.normals), f(a.tangents, b.tangents);
+    f(a.texcoords, b.texcoords), f(a.texcoords1, b.texcoords1), f(a.colors, b.colors);
+}
+
+// Keeps only the vertices that are used: exporters let many primitives share one big vertex buffer.
+void compact(Primitive& p) {
+    if (p.positions.size() <= p.indices.size()) return;
+    std::vector<uint32_t> number(p.positions.size(), none), used;
+    for (uint32_t& i : p.indices) {
+        if (number[i] == none) {
+            number[i] = uint32_t(used.size());
+            used.push_back(i);
+        }
+        i = number[i];
+    }
+    Primitive out;
+    each_attribute(out, p, [&](auto& to, const auto& from) {
+        if (from.empty()) return;
+        to.reserve(used.size());
+        for (uint32_t i : used) to.push_back(from[i]);
+    });
+    out.material = p.material;
+    out.indices = std::move(p.indices);
+    p = std::move(out);
+}
+
+void read_attributes(const Place& place, const tinygltf::Primitive& in, Primitive& out) {
+    for (const auto& [name, accessor] : in.attributes) {
+        const Place here = place.at(name);
+        if (name == "POSITION") out.positions = read_vectors<3>(here, accessor);
+        else if (name == "NORMAL") out.normals = read_vectors<3>(here, accessor);
+        else if (name == "TANGENT") out.tangents = read_vectors<4>(here, accessor);
+        else if (name == "TEXCOORD_0") out.texcoords = read_vectors<2>(here, accessor);
+        else if (name == "TEXCOORD_1") out.texcoords1 = read_vectors<2>(here, accessor);
+        else if (name == "COLOR_0") out.colors = read_colors(here, accessor);
+    }
+}
+
+std::vector<uint32_t> read_list(const Place& place, const tinygltf::Primitive& in, size_t vertices) {
+    std::vector<uint32_t> indices;
+    if (in.indices >= 0) {
+        indices = read_indices(place.at("indices"), in.indices);
+    } else {
+        indices.resize(vertices);
+        for (size_t i = 0; i < indices.size(); ++i) indices[i] = uint32_t(i);
+    }
+    return as_list(indices, in.mode);
+}
+
+Primitive read_primitive(const Place& place, const tinygltf::Primitive& in) {
+    Primitive out;
+    if (const auto* draco = extension(in, draco_extension)) {
+        out = decode_draco(place, in, *draco);
+    } else {
+        read_attributes(place, in, out);
+        out.indices = read_list(place, in, out.positions.size());
+    }
+    if (out.positions.empty()) place.fail("POSITION is missing or empty", "export the mesh with positions");
+    const std::pair<const char*, size_t> others[] = {{"NORMAL", out.normals.size()}, {"TANGENT", out.tangents.size()},
+        {"TEXCOORD_0", out.texcoords.size()}, {"TEXCOORD_1", out.texcoords1.size()}, {"COLOR_0", out.colors.size()}};
+    for (const auto& [name, size] : others)
+        if (size && size != out.positions.size())
+            place.fail("there are " + std::to_string(size) + " of " + name + " but " + std::to_string(out.positions.size()) + " of POSITION",
+                       "export the file again");
+    if (out.normals.empty()) out.tangents.clear();  // glTF 2.0, 3.7.2.1: they mean nothing beside computed normals
+    if (out.indices.size() % 3) place.fail("the number of indices is not a multiple of 3", "export the mesh as triangles");
+    for (uint32_t i : out.indices)
+        if (i >= out.positions.size())
+            place.fail("index " + std::to_string(i) + " is out of range, there are " + std::to_string(out.positions.size()) + " vertices",
+                       "export the file again");
+    if (in.material >= 0 && size_t(in.material) >= place.model.materials.size())
+        place.fail("there is no material " + std::to_string(in.material), "export the file again");
+    out.material = in.material >= 0 ? uint32_t(in.material) : none;
+    compact(out);
+    return out;
+}
+
+}  // namespace
+
+void read_meshes(const Place& place, Scene& scene) {
+    size_t lines = 0, morphed = 0;
+    bool default_material = scene.materials.empty();
+    for (size_t m = 0; m < place.model.meshes.size(); ++m) {
+        const auto& in = place.model.meshes[m];
+        const std::string name = "mesh " + std::to_string(m) + " \"" + in.name + "\"";
+        Mesh mesh;
+        mesh.name = in.name;
+        for (size_t p = 0; p < in.primitives.size(); ++p) {
+            const int mode = in.primitives[p].mode;
+            if (mode < TINYGLTF_MODE_TRIANGLES || mode > TINYGLTF_MODE_TRIANGLE_FAN) {
+                ++lines;
+                continue;
+            }
+            morphed += !in.primitives[p].targets.empty();
+            mesh.primitives.push_back(read_primitive(place.at(name + " primitive " + std::to_string(p)), in.primitives[p]));
+            default_material |= mesh.primitives.back().material == none;
+        }
+        scene.meshes.push_back(std::move(mesh));
+    }
+    if (default_material) {  // glTF's: white, metallic 1, roughness 1, which is what Material starts as
+        scene.materials.push_back({.name = "default"});
+        for (auto& mesh : scene.meshes)
+            for (auto& primitive : mesh.primitives)
+                if (primitive.material == none) primitive.material = uint32_t(scene.materials.size() - 1);
+    }
+    if (lines) scene.warnings.push_back(std::to_string(lines) + " primitives made of points or lines were left out.");
+    if (morphed) scene.warnings.push_back(std::to_string(morphed) + " primitives with morph targets are shown in their base shape.");
+}
+
+}  // namespace myriad::scenes::gltf
