@@ -9,6 +9,8 @@
 
 #include "engine/error.hpp"
 #include "scenes/gltf.hpp"
+#include "scenes/import/embree.hpp"
+#include "scenes/import/ibsp.hpp"
 #include "scenes/import/tidy.hpp"
 
 namespace myriad::scenes {
@@ -49,6 +51,8 @@ glm::dmat4 upright(Axis up) {
 const std::vector<Format>& formats() {
     static const std::vector<Format> list = {
         {{".gltf", ".glb"}, "glTF 2.0", read_gltf},
+        {{".bsp"}, "maps of Quake III and OpenArena (IBSP 46)", importing::import_ibsp},
+        {{".xml"}, "strands of Embree's scenes, with their .bin or .bin.gz beside", importing::import_embree},
     };
     return list;
 }

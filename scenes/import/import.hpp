@@ -14,12 +14,20 @@ namespace myriad::scenes {
 
 enum class Axis { x, y, z };
 
+// How strands of hair become triangles.
+struct StrandOptions {
+    // 2: ribbons, which turn their flat side away from the middle of the strands' roots; 3 and more: tubes with so many sides.
+    uint32_t sides = 4;
+    uint32_t keep_every = 1;  // a strand in so many is kept, so many times as thick
+};
+
 // How to read a file. What is not given follows from the file, or from what its format usually means.
 struct ImportOptions {
     std::optional<double> unit;    // metres a unit of the file
     std::optional<Axis> up;        // the axis of the file that points up
     std::optional<float> crease;   // degrees: where normals are missing, edges that turn less are smoothed; 0: none are
     bool linear_colors = false;    // colours of materials and vertices are linear, not sRGB as seen on a screen
+    StrandOptions strands;
 };
 
 // What a reader hands over: the scene in the file's own units and axes. import_scene() turns and scales it, computes
