@@ -7,8 +7,8 @@
 
 namespace myriad::scenes {
 
-// Throws InputError (file, place, cure) for whatever is wrong with the file; what is merely unsupported and harmless
-// becomes one of the scene's warnings.
-Scene load_gltf(const std::string& path);
+// `choice` is the name or index of one of the file's scenes, empty for its default. Throws InputError (file, place, cure)
+// for whatever is wrong with the file; what is merely unsupported and harmless becomes one of the scene's warnings.
+Scene load_gltf(const std::string& path, const std::string& choice = "");
 
 }  // namespace myriad::scenes

@@ -116,7 +116,8 @@ Camera framing_camera(const Triangles& triangles);
 // Throws InputError naming the cameras that exist.
 Camera pick_camera(const Scene& scene, const Triangles& triangles, const std::string& name);
 
-// `source`: a path to a .gltf or .glb file, or "builtin:NAME[?key=value&…]". Throws InputError.
+// `source`: a path to a .gltf or .glb file, "PATH#SCENE" for another scene in it than its default (by name, or index), or
+// "builtin:NAME[?key=value&…]". Throws InputError.
 Scene load(const std::string& source, uint32_t seed = 1);
 
 // One line a built-in scene, for `-h`.

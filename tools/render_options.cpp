@@ -90,7 +90,7 @@ const std::vector<std::string>& layer_names() {
 std::shared_ptr<RenderOptions> add_render_options(CLI::App& command) {
     auto shared = std::make_shared<RenderOptions>();
     RenderOptions& o = *shared;
-    command.add_option("SCENE", o.scene, "a .gltf or .glb file, or builtin:NAME[?key=value&...]")->required()->type_name("");
+    command.add_option("SCENE", o.scene, "a .gltf or .glb file, FILE#NAME or FILE#INDEX for another scene in it than its default, or builtin:NAME[?key=value&...]")->required()->type_name("");
     add_outputs(command, o);
     add_parsed(command, "--size", "WxH", std::to_string(o.frame.width) + "x" + std::to_string(o.frame.height), "pixels",
                [&o](const std::string& text) { std::tie(o.frame.width, o.frame.height) = parse_size("--size", text); });

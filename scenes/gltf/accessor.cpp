@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "engine/error.hpp"
+#include "scenes/gltf/meshopt.hpp"
 
 namespace myriad::scenes::gltf {
 namespace {
@@ -136,6 +137,7 @@ Range buffer_view(const Place& place, int index) {
     const std::string name = "bufferView " + std::to_string(index);
     if (index < 0 || size_t(index) >= model.bufferViews.size()) place.fail("there is no " + name, "export the file again");
     const auto& view = model.bufferViews[size_t(index)];
+    if (const auto* compressed = extension(view, meshopt_extension)) return decode_meshopt(place.at(name), index, *compressed);
     const auto& buffers = place.document->buffers;
     if (view.buffer < 0 || size_t(view.buffer) >= buffers.size())
         place.fail(name + " refers to buffer " + std::to_string(view.buffer) + ", which does not exist", "export the file again");

@@ -114,6 +114,12 @@ std::vector<json> take(json& root, const char* key) {
     return out;
 }
 
+// Whether only loaders without EXT_meshopt_compression need this buffer.
+bool is_fallback(const json& buffer) {
+    const json::json_pointer mark("/extensions/EXT_meshopt_compression/fallback");
+    return buffer.contains(mark) && buffer[mark] == true;
+}
+
 // The bytes of each buffer, each file and each chunk held once, however many buffers show it.
 void read_buffers(const Place& place, const std::vector<json>& buffers, const Container& container) {
     Document& document = *place.document;
@@ -126,6 +132,10 @@ void read_buffers(const Place& place, const std::vector<json>& buffers, const Co
             here.fail("it has no valid byteLength", "export the file again");
         Range range;
         const std::string uri = text(buffer, "uri");
+        if (is_fallback(buffer)) {
+            document.buffers.emplace_back();
+            continue;
+        }
         if (buffer.contains("uri")) {
             const std::string file = file_of_uri(here, uri);
             const auto it = file.empty() ? known.end() : known.find(file);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <deque>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -31,7 +32,8 @@ struct Document {
     std::string file, folder;    // the file's path, and the folder which its URIs may not leave
     Budget budget;
     std::set<std::string> files;  // those that have been read, besides the file itself
-    std::deque<Bytes> owned;     // what `buffers` point into
+    std::deque<Bytes> owned;     // what `buffers` and `decoded` point into
+    std::map<int, Range> decoded;  // compressed buffer views that have been asked for (meshopt.hpp)
 };
 
 // Throws InputError, OutOfMemory. What tinygltf warns of goes to `warnings`, a line each.

@@ -52,11 +52,21 @@ Material read_material(const Place& place, const tinygltf::Material& in, Texture
 }  // namespace
 
 void read_materials(const Place& place, Scene& scene) {
+    const size_t count = place.model.materials.size();
+    std::vector<bool> used(count, false);
+    bool needs_default = count == 0;
+    for (Mesh& mesh : scene.meshes)
+        for (Primitive& primitive : mesh.primitives) {
+            if (primitive.material != none) used[primitive.material] = true;
+            else primitive.material = uint32_t(count), needs_default = true;
+        }
     Textures textures(place, scene);
-    for (size_t i = 0; i < place.model.materials.size(); ++i) {
+    for (size_t i = 0; i < count; ++i) {
         const auto& in = place.model.materials[i];
-        scene.materials.push_back(read_material(place.at("material " + std::to_string(i) + " \"" + in.name + "\""), in, textures));
+        textures.skip(!used[i]);
+        scene.materials.push_back(read_material(place.at("material " + std::to_string(i) + " " + quote(in.name)), in, textures));
     }
+    if (needs_default) scene.materials.push_back({.name = "default"});  // white, metallic 1, roughness 1: what Material starts as
     textures.warn();
 }
 

@@ -104,13 +104,15 @@ Primitive read_primitive(const Place& place, const tinygltf::Primitive& in) {
 
 void read_meshes(const Place& place, Scene& scene) {
     size_t lines = 0, morphed = 0;
-    bool default_material = scene.materials.empty();
-    for (size_t m = 0; m < place.model.meshes.size(); ++m) {
+    scene.meshes.resize(place.model.meshes.size());
+    std::vector<bool> shown(scene.meshes.size(), false);
+    for (const Instance& instance : scene.instances) shown[instance.mesh] = true;
+    for (size_t m = 0; m < scene.meshes.size(); ++m) {
         const auto& in = place.model.meshes[m];
-        const std::string name = "mesh " + std::to_string(m) + " \"" + in.name + "\"";
-        Mesh mesh;
+        const std::string name = "mesh " + std::to_string(m) + " " + quote(in.name);
+        Mesh& mesh = scene.meshes[m];
         mesh.name = in.name;
-        for (size_t p = 0; p < in.primitives.size(); ++p) {
+        for (size_t p = 0; shown[m] && p < in.primitives.size(); ++p) {
             const int mode = in.primitives[p].mode;
             if (mode < TINYGLTF_MODE_TRIANGLES || mode > TINYGLTF_MODE_TRIANGLE_FAN) {
                 ++lines;
@@ -118,15 +120,7 @@ void read_meshes(const Place& place, Scene& scene) {
             }
             morphed += !in.primitives[p].targets.empty();
             mesh.primitives.push_back(read_primitive(place.at(name + " primitive " + std::to_string(p)), in.primitives[p]));
-            default_material |= mesh.primitives.back().material == none;
         }
-        scene.meshes.push_back(std::move(mesh));
-    }
-    if (default_material) {  // glTF's: white, metallic 1, roughness 1, which is what Material starts as
-        scene.materials.push_back({.name = "default"});
-        for (auto& mesh : scene.meshes)
-            for (auto& primitive : mesh.primitives)
-                if (primitive.material == none) primitive.material = uint32_t(scene.materials.size() - 1);
     }
     if (lines) scene.warnings.push_back(std::to_string(lines) + " primitives made of points or lines were left out.");
     if (morphed) scene.warnings.push_back(std::to_string(morphed) + " primitives with morph targets are shown in their base shape.");

@@ -1,0 +1,205 @@
+#include "scenes/gltf/nodes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/gtc/type_ptr.hpp>
+
+#include "engine/error.hpp"
+
+namespace myriad::scenes::gltf {
+namespace {
+
+glm::dmat4 compose(const glm::dvec3& translation, const glm::dquat& rotation, const glm::dvec3& scale) {
+    const double length = glm::length(rotation);
+    const glm::dquat unit = length > 0 && std::isfinite(length) ? rotation / length : glm::dquat(1, 0, 0, 0);
+    return glm::translate(glm::dmat4(1), translation) * glm::mat4_cast(unit) * glm::scale(glm::dmat4(1), scale);
+}
+
+glm::dmat4 local_transform(const Place& place, const tinygltf::Node& node) {
+    const auto check = [&](const std::vector<double>& v, size_t n, const char* what) {
+        if (!v.empty() && v.size() != n)
+            place.fail(std::string(what) + " has " + std::to_string(v.size()) + " numbers, not " + std::to_string(n), "correct it");
+        return !v.empty();
+    };
+    if (check(node.matrix, 16, "matrix")) return glm::make_mat4(node.matrix.data());
+    glm::dvec3 translation(0), scale(1);
+    glm::dquat rotation(1, 0, 0, 0);
+    if (check(node.translation, 3, "translation")) translation = glm::make_vec3(node.translation.data());
+    if (check(node.rotation, 4, "rotation")) rotation = {node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]};
+    if (check(node.scale, 3, "scale")) scale = glm::make_vec3(node.scale.data());
+    return compose(translation, rotation, scale);
+}
+
+bool finite(const glm::mat4& m) {
+    return std::all_of(glm::value_ptr(m), glm::value_ptr(m) + 16, [](float x) { return std::isfinite(x); });
+}
+
+// A camera has a place and looks along -Z, with its Y axis as far up as that leaves; scale in the hierarchy above it does
+// not concern it.
+void add_camera(const Place& place, const tinygltf::Node& node, const tinygltf::Camera& in, const glm::dmat4& to_world, Scene& scene) {
+    const std::string name = !node.name.empty() ? node.name : in.name;  // one glTF camera may stand at several nodes
+    const Place here = place.at("camera " + quote(name));
+    Camera camera{name, glm::mat4(1), float(in.perspective.yfov)};
+    if (!(camera.yfov > 0) || !(camera.yfov < 3.14159f)) here.fail("yfov is not between 0 and pi", "correct it");
+    const glm::dvec3 back = glm::normalize(glm::dvec3(to_world[2])), right = glm::normalize(glm::cross(glm::dvec3(to_world[1]), back));
+    camera.to_world = glm::mat4(glm::vec4(right, 0), glm::vec4(glm::cross(back, right), 0), glm::vec4(back, 0), to_world[3]);
+    if (!finite(camera.to_world)) here.fail("its transform is singular", "correct its scale");
+    scene.cameras.push_back(camera);
+}
+
+void add_light(const Place& place, const tinygltf::Node& node, const tinygltf::Value& extension, const glm::dmat4& to_world, Scene& scene) {
+    const int index = index_in(place.at(lights_extension), extension, "light").value_or(-1);
+    if (index < 0 || size_t(index) >= place.model.lights.size()) place.fail("there is no light " + std::to_string(index), "export the file again");
+    const auto& in = place.model.lights[size_t(index)];
+    Light light;
+    light.name = !node.name.empty() ? node.name : in.name;
+    const Place here = place.at("light " + quote(light.name));
+    if (in.type == "directional") light.type = Light::Type::directional;
+    else if (in.type == "spot") light.type = Light::Type::spot;
+    else if (in.type != "point") here.fail("its type is " + quote(in.type), "use point, spot or directional");
+    light.position = glm::vec3(to_world[3]);
+    light.direction = glm::vec3(glm::normalize(-glm::dvec3(to_world[2])));
+    if (in.color.size() != 0 && in.color.size() != 3) here.fail("its colour has not three numbers", "correct it");
+    for (int c = 0; c < 3; ++c) light.intensity[c] = float((in.color.empty() ? 1 : in.color[size_t(c)]) * in.intensity);
+    if (light.type == Light::Type::spot) {
+        light.inner_cone = float(in.spot.innerConeAngle);
+        light.outer_cone = float(in.spot.outerConeAngle);
+        if (!(light.inner_cone >= 0) || !(light.inner_cone <= light.outer_cone) || !(light.outer_cone <= 1.5707964f))
+            here.fail("its cone angles are not 0 <= inner <= outer <= pi/2", "correct them");
+    }
+    const float sum = glm::dot(light.direction, glm::vec3(1)) + glm::dot(light.position, glm::vec3(1)) + glm::dot(light.intensity, glm::vec3(1));
+    if (!std::isfinite(sum) || glm::any(glm::lessThan(light.intensity, glm::vec3(0))))
+        here.fail("its intensity is negative or its transform is singular", "correct it");
+    scene.lights.push_back(light);
+}
+
+// EXT_mesh_gpu_instancing: transforms of the mesh within the node; one attribute that says how many is enough.
+std::vector<glm::dmat4> instance_transforms(const Place& outer, const tinygltf::Value& extension) {
+    const Place place = outer.at(instancing_extension);
+    // An object without members is none in tinygltf: no attributes, and so one instance.
+    const tinygltf::Value none, &attributes = extension.Has("attributes") ? extension.Get("attributes") : none;
+    if (extension.Has("attributes") && !attributes.IsObject()) place.fail("attributes are not an object", "export the file again");
+    std::optional<size_t> count;
+    std::vector<glm::vec3> translations, scales;
+    std::vector<glm::vec4> rotations;
+    for (const std::string& name : attributes.Keys()) {
+        const Place here = place.at(quote(name));
+        const int accessor = index_in(place, attributes, name.c_str()).value_or(-1);
+        if (name == "TRANSLATION") translations = read_vectors<3>(here, accessor);
+        else if (name == "ROTATION") rotations = read_vectors<4>(here, accessor);
+        else if (name == "SCALE") scales = read_vectors<3>(here, accessor);
+        const size_t size = FloatReader(here, accessor, 0).count();
+        if (count.value_or(size) != size)
+            here.fail("there are " + std::to_string(size) + " but " + std::to_string(*count) + " of another attribute", "export the file again");
+        count = size;
+    }
+    place.spend(count.value_or(1), sizeof(glm::dmat4) + sizeof(Instance));
+    std::vector<glm::dmat4> out;
+    out.reserve(count.value_or(1));
+    for (size_t i = 0; i < count.value_or(1); ++i) {
+        const glm::dvec4 r = rotations.empty() ? glm::dvec4(0, 0, 0, 1) : glm::dvec4(rotations[i]);
+        out.push_back(compose(translations.empty() ? glm::dvec3(0) : glm::dvec3(translations[i]), glm::dquat(r.w, r.x, r.y, r.z),
+                              scales.empty() ? glm::dvec3(1) : glm::dvec3(scales[i])));
+    }
+    return out;
+}
+
+// Walks the hierarchy with a stack of its own: neither a deep chain nor a cycle can hurt. Transforms are multiplied in double.
+class Walk {
+public:
+    Walk(const Place& place, Scene& scene) : place_(place), scene_(scene), seen_(place.model.nodes.size(), false) {}
+
+    void run(const std::vector<int>& roots) {
+        push(place_, roots, glm::dmat4(1));
+        while (!stack_.empty()) {
+            const auto [index, to_world] = stack_.back();
+            stack_.pop_back();
+            visit(index, to_world);
+        }
+        if (orthographic_) scene_.warnings.push_back(std::to_string(orthographic_) + " orthographic cameras were left out.");
+    }
+
+private:
+    void push(const Place& place, const std::vector<int>& nodes, const glm::dmat4& to_world) {
+        for (auto it = nodes.rbegin(); it != nodes.rend(); ++it) {  // reversed, so that they are visited in file order
+            if (*it < 0 || size_t(*it) >= seen_.size()) place.fail("there is no node " + std::to_string(*it), "export the file again");
+            if (seen_[size_t(*it)])
+                place.fail("node " + std::to_string(*it) + " is in a cycle or has two parents", "make the hierarchy a tree");
+            seen_[size_t(*it)] = true;
+            stack_.emplace_back(*it, to_world);
+        }
+    }
+
+    void visit(int index, const glm::dmat4& parent) {
+        const auto& node = place_.model.nodes[size_t(index)];
+        const Place place = place_.at("node " + std::to_string(index) + " " + quote(node.name));
+        const glm::dmat4 to_world = parent * local_transform(place, node);
+        if (node.mesh >= 0) add_instances(place, node, to_world);
+        if (node.camera >= 0) add_camera(place, node, to_world);
+        if (const auto* light = extension(node, lights_extension)) add_light(place, node, *light, to_world, scene_);
+        push(place, node.children, to_world);
+    }
+
+    void add_instances(const Place& place, const tinygltf::Node& node, const glm::dmat4& to_world) {
+        if (size_t(node.mesh) >= place.model.meshes.size()) place.fail("there is no mesh " + std::to_string(node.mesh), "export the file again");
+        const uint32_t mesh = uint32_t(node.mesh);
+        const auto* instancing = extension(node, instancing_extension);
+        if (!instancing) scene_.instances.push_back({mesh, glm::mat4(to_world)});
+        else
+            for (const glm::dmat4& within : instance_transforms(place, *instancing)) scene_.instances.push_back({mesh, glm::mat4(to_world * within)});
+    }
+
+    void add_camera(const Place& place, const tinygltf::Node& node, const glm::dmat4& to_world) {
+        const auto& cameras = place.model.cameras;
+        if (size_t(node.camera) >= cameras.size()) place.fail("there is no camera " + std::to_string(node.camera), "export the file again");
+        if (cameras[size_t(node.camera)].type == "perspective") gltf::add_camera(place, node, cameras[size_t(node.camera)], to_world, scene_);
+        else ++orthographic_;
+    }
+
+    const Place& place_;
+    Scene& scene_;
+    std::vector<bool> seen_;
+    std::vector<std::pair<int, glm::dmat4>> stack_;
+    size_t orthographic_ = 0;
+};
+
+// The roots of a file without scenes: every node that is nobody's child.
+std::vector<int> roots_without_scene(const Place& place) {
+    const auto& nodes = place.model.nodes;
+    std::vector<bool> child(nodes.size(), false);
+    for (const auto& node : nodes)
+        for (int c : node.children)
+            if (c >= 0 && size_t(c) < child.size()) child[size_t(c)] = true;
+    std::vector<int> roots;
+    for (size_t i = 0; i < child.size(); ++i)
+        if (!child[i]) roots.push_back(int(i));
+    if (roots.empty() && !nodes.empty()) place.fail("the nodes form a cycle", "make the hierarchy a tree");
+    return roots;
+}
+
+}  // namespace
+
+int pick_scene(const Place& place, const std::string& choice) {
+    const auto& scenes = place.model.scenes;
+    if (choice.empty()) {
+        const int which = scenes.empty() ? -1 : std::max(place.model.defaultScene, 0);
+        if (which >= 0 && size_t(which) >= scenes.size()) place.fail("there is no scene " + std::to_string(which), "export the file again");
+        return which;
+    }
+    for (size_t i = 0; i < scenes.size(); ++i)
+        if (scenes[i].name == choice) return int(i);
+    const bool digits = choice.size() <= 9 && std::all_of(choice.begin(), choice.end(), [](char c) { return c >= '0' && c <= '9'; });
+    if (digits && std::stoul(choice) < scenes.size()) return int(std::stoul(choice));
+    std::string known;
+    for (size_t i = 0; i < std::min<size_t>(scenes.size(), 100); ++i) known += (i ? ", " : "") + std::to_string(i) + " " + quote(scenes[i].name);
+    place.fail("there is no scene " + quote(choice), scenes.empty() ? "the file has none, leave the choice out" : "choose one of " + known);
+}
+
+void read_nodes(const Place& place, int which, Scene& scene) {
+    Walk(place, scene).run(which < 0 ? roots_without_scene(place) : place.model.scenes[size_t(which)].nodes);
+}
+
+}  // namespace myriad::scenes::gltf

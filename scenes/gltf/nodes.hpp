@@ -1,0 +1,22 @@
+// The hierarchy of nodes: instances, cameras and lights.
+#pragma once
+
+#include <string>
+
+#include "scenes/gltf/value.hpp"
+#include "scenes/scene.hpp"
+
+namespace myriad::scenes::gltf {
+
+inline constexpr const char* lights_extension = "KHR_lights_punctual";
+inline constexpr const char* instancing_extension = "EXT_mesh_gpu_instancing";
+
+// Which of the file's scenes `choice` names: by name, or by index in decimal; the file's default where it is empty. -1 for a
+// file without scenes. Throws InputError naming those that exist.
+int pick_scene(const Place& place, const std::string& choice);
+
+// Fills scene.instances, scene.cameras and scene.lights from glTF scene `which`; -1: from every node that is nobody's child.
+// Needs scene.meshes.
+void read_nodes(const Place& place, int which, Scene& scene);
+
+}  // namespace myriad::scenes::gltf
