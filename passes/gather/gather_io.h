@@ -52,30 +52,58 @@ MYRIAD_FN float gather_scale(uint block) { return float(block * block) / 3.14159
 // No pixel gets more, so that later sums stay finite whatever the flux (W/m^2; the sun brings 1e3).
 const float gather_most = 1e30f;
 
-// Where a VPL at `vpl_position` looks for the receiver x with geometric normal n_g in its map, and the distance up to which a
-// surface in that texel hides it (metres).
+// How a VPL at `vpl_position` looks for the receiver x with geometric normal n_g in its map: four texels around x's direction,
+// each asked whether it hides x, and their answers weighted bilinearly (percentage-closer filtering, Reeves et al. 1987). One texel
+// alone would end shadows in steps as large as a texel's footprint.
 struct MapQuery {
-    uint texel;
-    float distance;
+    vec3 n_g;
+    float distance, along;    // |d| and d . n_g, with d = x - vpl_position
+    float bias;               // metres
+    uint half_index;
+    int x, y;                 // the first texel: -1 at the border, where texels are repeated
+    vec2 weight;              // of the second texel along u, and along v
 };
+// The whole part of t >= -0.5; what is not a number, of a receiver in the VPL itself, becomes some texel, too.
+MYRIAD_FN int map_first(float t, uint size) { return t >= 0.0f ? int(min(t, float(size - 1u))) : -1; }
 MYRIAD_FN MapQuery map_query(vec3 x, vec3 n_g, vec3 vpl_position, uint size, float bias) {
     const vec3 d = x - vpl_position;
     const vec2 uv = project(d);
-    const uint half_index = half_of(d);
-    const uint tx = texel_coordinate(uv.x, size);
-    const uint ty = texel_coordinate(uv.y, size);
-    const vec2 middle = texel_middle(tx, ty, size);
-    const float dist = sqrt(dot(d, d));
-    // Where the texel's ray meets the receiver's plane; only nearer than the receiver itself counts, since elsewhere another
-    // surface may have taken over.
-    const float on_plane = dot(d, n_g) / dot(unproject(half_index, middle), n_g);
-    const float depth = on_plane > 0.0f && on_plane < dist ? on_plane : dist;
+    const vec2 texel = (uv + vec2(1.0f, 1.0f)) * (0.5f * float(size)) - vec2(0.5f, 0.5f);
     MapQuery q;
-    q.texel = texel_index(half_index, tx, ty, size);
-    q.distance = depth - bias * dist * texel_angle(uv, size);
+    q.n_g = n_g;
+    q.distance = sqrt(dot(d, d));
+    q.along = dot(d, n_g);
+    q.bias = bias * q.distance * texel_angle(uv, size);
+    q.half_index = half_of(d);
+    q.x = map_first(texel.x, size);
+    q.y = map_first(texel.y, size);
+    q.weight = texel - vec2(float(q.x), float(q.y));
     return q;
 }
-MYRIAD_FN bool map_hides(float stored_depth, MapQuery q) { return stored_depth < q.distance; }
+
+// One of the four texels, right = 0 or 1, below = 0 or 1, and the distance up to which a surface in it hides x (metres).
+struct MapTexel {
+    uint index;
+    float distance;
+};
+MYRIAD_FN MapTexel map_texel(MapQuery q, int right, int below, uint size) {
+    const uint tx = uint(clamp(q.x + right, 0, int(size) - 1));
+    const uint ty = uint(clamp(q.y + below, 0, int(size) - 1));
+    // Where the texel's ray meets the receiver's plane; only nearer than the receiver itself counts, since elsewhere another
+    // surface may have taken over.
+    const float on_plane = q.along / dot(unproject(q.half_index, texel_middle(tx, ty, size)), q.n_g);
+    MapTexel t;
+    t.index = texel_index(q.half_index, tx, ty, size);
+    t.distance = (on_plane > 0.0f && on_plane < q.distance ? on_plane : q.distance) - q.bias;
+    return t;
+}
+MYRIAD_FN float map_seen(float stored_depth, MapTexel t) { return stored_depth < t.distance ? 0.0f : 1.0f; }
+// The share of x that is seen, of the four answers in the order of rows.
+MYRIAD_FN float map_blend(MapQuery q, vec4 seen) {
+    const float above = mix(seen.x, seen.y, q.weight.x);
+    const float below = mix(seen.z, seen.w, q.weight.x);
+    return mix(above, below, q.weight.y);
+}
 
 // Which pixel a thread works on, so that the threads of a workgroup share their set: sets are laid out one after the other, each
 // in whole workgroups. `set` is uniform over the workgroup.

@@ -1,5 +1,6 @@
 // Visibility by maps: the query's properties on the host, and the kernel against maps of exact depths.
 #include <array>
+#include <functional>
 
 #include "passes/gather/gather_testing.hpp"
 #include "passes/geometry/test_scene.hpp"
@@ -19,13 +20,21 @@ protected:
             default: return direction();
         }
     }
-    // What a plane through x leaves in the texel of the query.
-    static float plane_depth(const vec3& vpl, const vec3& x, const vec3& n, uint size) {
-        const vec3 d = x - vpl;
-        const vec2 uv = project(d);
-        const dvec3 w(unproject(half_of(d), texel_middle(texel_coordinate(uv.x, size), texel_coordinate(uv.y, size), size)));
-        const double t = dot(dvec3(d), dvec3(n)) / dot(w, dvec3(n));
-        return t > 0 ? float(t) : std::numeric_limits<float>::infinity();
+    static float infinity() { return std::numeric_limits<float>::infinity(); }
+    // What a plane through x leaves in texel `index` of a map.
+    static float plane_depth(const vec3& vpl, const vec3& x, const vec3& n, uint index, uint size) {
+        const dvec3 w(unproject(index / (size * size), texel_middle(index % size, index / size % size, size)));
+        const double t = dot(dvec3(x) - dvec3(vpl), dvec3(n)) / dot(w, dvec3(n));
+        return t > 0 ? float(t) : infinity();
+    }
+    // The share of x that is seen where texel t stores stored(t).
+    static float seen(const MapQuery& q, uint size, const std::function<float(const MapTexel&)>& stored) {
+        vec4 answers;
+        for (int i = 0; i < 4; ++i) {
+            const MapTexel t = map_texel(q, i % 2, i / 2, size);
+            answers[i] = map_seen(stored(t), t);
+        }
+        return map_blend(q, answers);
     }
 };
 
@@ -41,10 +50,11 @@ TEST_F(GatherMapsTest, a_plane_does_not_shadow_itself) {
         const vec3 n = std::cos(angle) * to_vpl + std::sin(angle) * normalize(side);
         const vec3 x = distance * point(), vpl = x + distance * to_vpl;
         if (dot(n, vpl - x) < 0.0174f * length(vpl - x)) continue;
-        const float stored = plane_depth(vpl, x, n, size);
-        ASSERT_FALSE(map_hides(stored, map_query(x, n, vpl, size, 0.01f))) << "size " << size << ", angle " << angle;
+        const auto stored = [&](const MapTexel& t) { return plane_depth(vpl, x, n, t.index, size); };
+        ASSERT_EQ(seen(map_query(x, n, vpl, size, 0.01f), size, stored), 1.0f) << "size " << size << ", angle " << angle;
         // With the normal as the G-buffer keeps it, off by 4e-5, the default bias of half a texel suffices for maps up to 256.
-        ASSERT_TRUE(size > 256 || !map_hides(stored, map_query(x, unpack_direction(pack_direction(n)), vpl, size, 0.5f))) << size << " " << angle;
+        if (size > 256) continue;
+        ASSERT_EQ(seen(map_query(x, unpack_direction(pack_direction(n)), vpl, size, 0.5f), size, stored), 1.0f) << size << " " << angle;
     }
 }
 
@@ -58,19 +68,22 @@ TEST_F(GatherMapsTest, an_occluder_hides) {
         const vec3 x = point(), vpl = x + to_vpl * std::pow(10.0f, uniform(-2, 2));
         const float distance = length(vpl - x);
         const MapQuery q = map_query(x, n, vpl, size, 0.5f);
-        // tan(60) for the slope of the plane and a half for the bias, in half diagonals of a texel.
-        const float reach = (1.8f + 0.5f) * texel_angle(project(x - vpl), size) * distance;
-        ASSERT_TRUE(map_hides(distance - 1.1f * reach, q)) << size;
-        ASSERT_TRUE(size < 128 || map_hides(0.9f * distance, q));
-        ASSERT_FALSE(map_hides(distance, q));
-        ASSERT_FALSE(map_hides(std::numeric_limits<float>::infinity(), q));
+        // tan(60) for the slope of the plane over the two half diagonals that a texel's middle may be off, and a half for the bias.
+        const float reach = (2 * 1.8f + 0.5f) * texel_angle(project(x - vpl), size) * distance;
+        ASSERT_EQ(seen(q, size, [&](const MapTexel&) { return distance - 1.1f * reach; }), 0.0f) << size;
+        ASSERT_EQ(seen(q, size, [&](const MapTexel&) { return distance; }), 1.0f);
+        ASSERT_EQ(seen(q, size, [&](const MapTexel&) { return infinity(); }), 1.0f);
+        if (size < 1024) continue;
+        ASSERT_EQ(seen(q, size, [&](const MapTexel&) { return 0.9f * distance; }), 0.0f);
     }
 }
 
 TEST_F(GatherMapsTest, query_is_in_range_where_everything_coincides) {
     for (const vec3& x : {vec3(0), vec3(1e-30f), vec3(1e-45f, 0, 0), vec3(1e12f), vec3(-1, 0, 0), vec3(0, 1, 0)})
         for (const vec3& n : {vec3(1, 0, 0), vec3(0, 0, -1)})
-            for (uint size : {2u, 1024u}) ASSERT_LT(map_query(x, n, vec3(0), size, 0.5f).texel, map_texels(size));
+            for (uint size : {2u, 1024u})
+                for (int i = 0; i < 4; ++i)
+                    ASSERT_LT(map_texel(map_query(x, n, vec3(0), size, 0.5f), i % 2, i / 2, size).index, map_texels(size));
 }
 
 TEST_F(GatherMapsTest, equals_the_twin_on_random_maps) {
@@ -140,16 +153,33 @@ TEST_F(GatherMapsTest, exact_maps_tend_to_exact_visibility) {
     EXPECT_LT(before, 0.02);
 }
 
+// As a receiver moves from the middle of one texel to that of the next, which is hidden, its share falls evenly from 1 to 0.
+TEST_F(GatherMapsTest, shadows_end_gradually) {
+    const uint size = 16;
+    for (float at = 0.05f; at < 1; at += 0.1f) {
+        const vec2 middle = texel_middle(5, 9, size);
+        const vec3 x = 2.0f * unproject(half_back, vec2(middle.x + at * 2 / float(size), middle.y));
+        const MapQuery q = map_query(x, -normalize(x), vec3(0), size, 0.5f);
+        const uint hidden = texel_index(half_back, 6, 9, size);
+        EXPECT_NEAR(seen(q, size, [&](const MapTexel& t) { return t.index == hidden ? 1.0f : infinity(); }), 1 - at, 1e-5f);
+    }
+}
+
 TEST_F(GatherMapsTest, twin_sees_what_it_must) {
     std::vector<uint> map(map_texels(9), floatBitsToUint(1.0f));
-    const dvec3 x(3, 0.1, 0.1), n(-1, 0, 0), origin(0);
-    EXPECT_EQ(map_seen_ref(x, n, origin, map.data(), 9, 0.5), Seen::no);
+    const dvec3 x(3, 1e-3, 1e-3), n(-1, 0, 0), origin(0);
+    const auto share = [&](const dvec3& at) { return map_seen_ref(at, n, origin, map.data(), 9, 0.5).share; };
+    EXPECT_EQ(share(x), 0);
     map.assign(map.size(), floatBitsToUint(3.1f));
-    EXPECT_EQ(map_seen_ref(x, n, origin, map.data(), 9, 0.5), Seen::yes);
+    EXPECT_NEAR(share(x), 1, 1e-12);
     map[texel_index(half_front, 4, 4, 9)] = floatBitsToUint(1.0f);  // the texel around the axis, and no other
-    EXPECT_EQ(map_seen_ref(x, n, origin, map.data(), 9, 0.5), Seen::no);
-    EXPECT_EQ(map_seen_ref({-3, 0.1, 0.1}, n, origin, map.data(), 9, 0.5), Seen::yes);
-    EXPECT_EQ(map_seen_ref({3, 1.1, 0.1}, n, origin, map.data(), 9, 0.5), Seen::yes);
+    EXPECT_NEAR(share(x), 0.0015, 1e-5);                              // a texel is 2/3 wide at this distance: d.y = 6 u
+    EXPECT_NEAR(share({-3, 0.1, 0.1}), 1, 1e-12);
+    EXPECT_NEAR(share({3, 1.6, 0.1}), 1, 1e-12);
+    EXPECT_LT(map_seen_ref(x, n, origin, map.data(), 9, 0.5).slack, 1e-5);
+    map[texel_index(half_front, 4, 4, 9)] = floatBitsToUint(2.8f);  // within rounding of nothing: sure
+    EXPECT_LT(map_seen_ref(x, n, origin, map.data(), 9, 0.5).slack, 1e-5);
+    EXPECT_GE(map_seen_ref({3, 1, 1}, {0, 1, 0}, {0, 1, 0}, map.data(), 9, 0.5).slack, 0.5);  // along its own plane
 }
 
 TEST_F(GatherMapsTest, comparator_sees_another_map) {

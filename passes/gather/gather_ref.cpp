@@ -25,8 +25,8 @@ std::vector<GatherRef> gather_ref(const HostGBuffer& gbuffer, const std::vector<
             const double rounding = std::min(4e-7 / (distance * distance), bound);
             if (std::min(cos_receiver, cos_vpl) < -1e-6) continue;
             const Seen s = seen(p, i);
-            if (s != Seen::no) out[p].irradiance += exitance * g;
-            out[p].slack += exitance * (s == Seen::no ? 0 : s == Seen::yes ? rounding : rounding + g);
+            out[p].irradiance += exitance * g * s.share;
+            out[p].slack += exitance * ((s.share + s.slack) * rounding + s.slack * g);
         }
         out[p].slack += 1e-5 * out[p].irradiance;
     }
@@ -35,24 +35,29 @@ std::vector<GatherRef> gather_ref(const HostGBuffer& gbuffer, const std::vector<
 
 Seen map_seen_ref(const dvec3& x, const dvec3& n_g, const dvec3& vpl, const uint* map, uint size, double bias) {
     const dvec3 d = x - vpl;
-    const double distance = length(d);
-    const dvec2 uv = dvec2(d.y, d.z) / (distance + std::abs(d.x));
-    const dvec2 texel = 0.5 * double(size) * (uv + 1.0);
-    const dvec2 whole = min(floor(texel), dvec2(size - 1));
-    const dvec2 to_edge = abs(texel - round(texel));
-    if (std::min(to_edge.x, to_edge.y) < 1e-6 * size) return Seen::unsure;
-    const dvec2 middle = (2.0 * whole + 1.0) / double(size) - 1.0;
-    const double q = dot(middle, middle);
-    const dvec3 w = dvec3(d.x < 0 ? q - 1 : 1 - q, 2 * middle.x, 2 * middle.y) / (1 + q);
-    const double facing = dot(d, n_g) / distance, slope = dot(w, n_g);
-    if (std::abs(facing) < 1e-6) return Seen::unsure;
-    const double on_plane = distance * facing / slope;
-    const double depth = on_plane > 0 ? std::min(on_plane, distance) : distance;
-    const double limit = depth - bias * distance * 2 * std::numbers::sqrt2 / (size * (1 + dot(uv, uv)));
-    const double rounding = 1e-6 * (distance + depth * (1 / std::abs(facing) + 1 / std::abs(slope)));
-    const double stored = uintBitsToFloat(map[texel_index(d.x < 0 ? half_back : half_front, uint(whole.x), uint(whole.y), size)]);
-    if (std::abs(stored - limit) <= rounding) return Seen::unsure;
-    return stored < limit ? Seen::no : Seen::yes;
+    const double distance = length(d), facing = dot(d, n_g) / distance;
+    const dvec2 uv = dvec2(d.y, d.z) / (distance + std::abs(d.x)), point = 0.5 * double(size) * (uv + 1.0) - 0.5;
+    const uint half = d.x < 0 ? half_back : half_front;
+    // Where the halves meet, floats may choose the other one; seen head-on, a plane has no depth to speak of.
+    if (std::abs(d.x) < 1e-6 * distance || std::abs(facing) < 1e-6) return seen_unsure;
+    Seen seen{0, 4e-7 * size};  // weights are as good as (u, v)
+    for (int i = 0; i < 4; ++i) {
+        // Each of the four texels nearest weighs what a square of a texel's size around the point has in common with it.
+        const dvec2 whole = floor(point) + dvec2(i % 2, i / 2), overlap = 1.0 - abs(point - whole);
+        const double weight = overlap.x * overlap.y;
+        const dvec2 texel = clamp(whole, dvec2(0), dvec2(size - 1));
+        const dvec2 middle = (2.0 * texel + 1.0) / double(size) - 1.0;
+        const double q = dot(middle, middle);
+        const dvec3 w = dvec3(d.x < 0 ? q - 1 : 1 - q, 2 * middle.x, 2 * middle.y) / (1 + q);
+        const double slope = dot(w, n_g), on_plane = distance * facing / slope;
+        const double depth = on_plane > 0 ? std::min(on_plane, distance) : distance;
+        const double limit = depth - bias * distance * 2 * std::numbers::sqrt2 / (size * (1 + dot(uv, uv)));
+        const double rounding = 1e-6 * (distance + depth * (1 / std::abs(facing) + 1 / std::abs(slope)));
+        const double stored = uintBitsToFloat(map[texel_index(half, uint(texel.x), uint(texel.y), size)]);
+        if (std::abs(stored - limit) <= rounding) seen.share += 0.5 * weight, seen.slack += 0.5 * weight;
+        else if (stored >= limit) seen.share += weight;
+    }
+    return seen;
 }
 
 std::vector<uint> exact_map(const vec3& from, const scenes::Triangles& triangles, uint size) {
@@ -67,7 +72,7 @@ std::vector<uint> exact_map(const vec3& from, const scenes::Triangles& triangles
 }
 
 Seen ray_seen_ref(const dvec3& from, const dvec3& to, const scenes::Triangles& triangles) {
-    Seen seen = Seen::yes;
+    Seen seen = seen_whole;
     for (const uvec4& t : triangles.triangles) {
         const dvec3 a = dvec3(triangles.positions[t.x]) - from, b = dvec3(triangles.positions[t.y]) - from, c = dvec3(triangles.positions[t.z]) - from;
         const dvec3 d = to - from, n = cross(b - a, c - a);
@@ -76,8 +81,8 @@ Seen ray_seen_ref(const dvec3& from, const dvec3& to, const scenes::Triangles& t
         const double inside = std::min({wa / sum, wb / sum, wc / sum}), at = dot(a, n) / dot(d, n);
         // A ray leaves its own triangle from some 1e-6 of its length away (ray_origin), which is no doubt.
         const double margin = std::min(inside / 1e-4, std::min(at, 1 - at) / 5e-7);
-        if (margin > 1) return Seen::no;
-        if (margin > -1) seen = Seen::unsure;
+        if (margin > 1) return seen_not;
+        if (margin > -1) seen = seen_unsure;
     }
     return seen;
 }

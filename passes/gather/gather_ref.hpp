@@ -9,7 +9,11 @@
 
 namespace myriad::passes {
 
-enum class Seen { no, yes, unsure };  // unsure: floats may fall either way
+// The share of a VPL's light that a receiver gets, 0 to 1, and how far floats may be from it.
+struct Seen {
+    double share = 0, slack = 0;
+};
+inline constexpr Seen seen_not{0, 0}, seen_whole{1, 0}, seen_unsure{0.5, 0.5};
 
 // The kernel's result lies within `slack` of `irradiance`: what VPLs bring of which it is unsure whether they are seen, and what
 // rounding of positions and cosines may move.
@@ -19,9 +23,9 @@ struct GatherRef {
 
 using SeenRef = std::function<Seen(size_t pixel, size_t vpl)>;
 std::vector<GatherRef> gather_ref(const HostGBuffer& gbuffer, const std::vector<Vpl>& vpls, uint block, double bound,
-                                  const SeenRef& seen = [](size_t, size_t) { return Seen::yes; });
+                                  const SeenRef& seen = [](size_t, size_t) { return seen_whole; });
 
-// Whether a VPL's map (map_texels(size) words) lets it see the receiver x of geometric normal n_g.
+// What a VPL's map (map_texels(size) words) lets it see of the receiver x of geometric normal n_g.
 Seen map_seen_ref(const glm::dvec3& x, const glm::dvec3& n_g, const glm::dvec3& vpl, const uint* map, uint size, double bias);
 
 // The map of exact depths: each texel's ray against every triangle.

@@ -6,6 +6,15 @@
 layout(constant_id = 2) const bool use_maps = true;
 layout(push_constant, scalar) uniform Push { GatherPush push; };
 
+float seen_in_texel(MapQuery q, int right, int below, uint map) {
+    const MapTexel t = map_texel(q, right, below, push.map_size);
+    return map_seen(uintBitsToFloat(push.atlas.at[map + t.index]), t);
+}
+float seen_in_map(vec3 x, vec3 n_g, vec3 vpl_position, uint map) {
+    const MapQuery q = map_query(x, n_g, vpl_position, push.map_size, push.bias);
+    return map_blend(q, vec4(seen_in_texel(q, 0, 0, map), seen_in_texel(q, 1, 0, map), seen_in_texel(q, 0, 1, map), seen_in_texel(q, 1, 1, map)));
+}
+
 void main() {
     const GatherPixel pixel = gather_pixel(workgroup_index(), gl_LocalInvocationIndex, gl_WorkGroupSize.x, push.gbuffer.width,
                                            push.gbuffer.height, push.block);
@@ -29,12 +38,8 @@ void main() {
         const Vpl vpl = push.vpls.at[i];
         const float g = bounded_geometry(x, n, vpl.position, unpack_direction(vpl.normal), push.bound);
         if (g > 0.0f) {
-            bool hidden = false;
-            if (use_maps) {
-                const MapQuery q = map_query(x, n_g, vpl.position, push.map_size, push.bias);
-                hidden = map_hides(uintBitsToFloat(push.atlas.at[(i - push.first_map) * map_texels(push.map_size) + q.texel]), q);
-            }
-            if (!hidden) sum += vpl.flux * (g * scale);
+            const float seen = use_maps ? seen_in_map(x, n_g, vpl.position, (i - push.first_map) * map_texels(push.map_size)) : 1.0f;
+            sum += vpl.flux * (g * seen * scale);
         }
     }
     push.irradiance.at[p] = vec4(min(sum, vec3(gather_most)), 0.0f);

@@ -27,6 +27,7 @@ void draw_half(Splat s, uint half_index, uint map) {
 
 void draw(View view, Sphere sphere, uint cone, uvec2 box, uint map) {
     const Splat s = splat_of(view, sphere, cone, box);
+    if (s.height == 0.0f) return;  // seen edge-on
     const uint near = half_of(s.d);
     draw_half(s, near, map);
     if (splat_in_both(s, push.map_size)) draw_half(s, 1u - near, map);

@@ -58,11 +58,14 @@ MYRIAD_FN float splat_depth(Splat s, vec3 w) {
     return t > 0.0f && inside ? t : -1.0f;
 }
 
+// How far beyond the equator the middles of texels lie that a gather asks, as an angle over the texel's side in (u, v): a look-up
+// blends texels up to one away, along both axes (passes/gather).
+const float splat_rim = 2.8285f;
+
 // Whether the node may cover texels of the half where its centre is not: its sphere crosses the equator, or comes as near as
-// the rim's texels reach over it. Their middles are directions of the other half, by up to half a diagonal, but directions
-// of this half fall in them, and would see nothing there.
+// the texels reach over it that a look-up in that half blends. Their middles are directions of the other half.
 MYRIAD_FN bool splat_in_both(Splat s, uint size) {
-    return abs(s.d.x) <= s.radius + 1.4143f / float(size) * sqrt(dot(s.d, s.d));
+    return abs(s.d.x) <= s.radius + splat_rim / float(size) * sqrt(dot(s.d, s.d));
 }
 
 // The texels of one axis whose middles may lie in [middle - radius, middle + radius]: first, and one past the last.
