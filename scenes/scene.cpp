@@ -21,12 +21,18 @@ Camera framing_camera(const Triangles& triangles) {
     Camera camera;
     camera.name = "framing";
     const glm::dvec3 centre = (glm::dvec3(triangles.lo) + glm::dvec3(triangles.hi)) * 0.5;
-    const double radius = glm::length(glm::dvec3(triangles.hi) - glm::dvec3(triangles.lo)) * 0.5;
-    // Far enough that the bounding sphere fits the vertical angle, a little to the side and above. A scene without
-    // extent is seen from one metre.
-    const double distance = radius > 0 ? 1.05 * radius / std::sin(camera.yfov * 0.5) : 1.0;
-    const glm::dvec3 eye = centre + distance * glm::normalize(glm::dvec3(0.6, 0.45, 1.0));
-    camera.to_world = glm::mat4(glm::inverse(glm::lookAt(eye, centre, glm::dvec3(up))));
+    const glm::dvec3 half = (glm::dvec3(triangles.hi) - glm::dvec3(triangles.lo)) * 0.5;
+    const glm::dvec3 back = glm::normalize(glm::dvec3(0.6, 0.45, 1.0));  // a little to the side and above
+    const glm::dmat3 axes(glm::inverse(glm::lookAt(back, glm::dvec3(0), glm::dvec3(up))));
+    // As near as leaves every corner of the bounds in view, in a square image too, and a little room around.
+    double distance = 0;
+    for (int i = 0; i < 8; ++i) {
+        const glm::dvec3 corner = glm::transpose(axes) * (half * glm::dvec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
+        distance = std::max(distance, corner.z + 1.05 * std::max(std::abs(corner.x), std::abs(corner.y)) / std::tan(camera.yfov * 0.5));
+    }
+    if (!(distance > 0)) distance = 1;  // a scene without extent
+    camera.to_world = glm::mat4(glm::dmat4(axes));
+    camera.to_world[3] = glm::vec4(centre + distance * back, 1);
     return camera;
 }
 

@@ -233,18 +233,31 @@ TEST(Flatten, AnEmptySceneIsEmpty) {
     EXPECT_TRUE(std::isfinite(camera.to_world[3].x + camera.to_world[2].z));
 }
 
-TEST(Cameras, FramingSeesEveryVertex) {
-    for (const vec3 at : {vec3(0), vec3(1e6f, 0, 0)}) {
-        Scene scene = one_triangle(true, glm::translate(mat4(1), at) * glm::scale(mat4(1), vec3(100, 100, 100)));
-        const Triangles t = flatten(scene);
-        const Camera camera = framing_camera(t);
-        const glm::dmat4 to_camera = glm::inverse(glm::dmat4(camera.to_world));
-        for (const auto& v : t.positions) {
-            const glm::dvec3 c(to_camera * glm::dvec4(v, 1));
-            EXPECT_LT(c.z, 0);
-            EXPECT_LT(std::max(std::abs(c.x), std::abs(c.y)) / -c.z, std::tan(camera.yfov / 2));
-        }
+// How far from the middle of a square picture the outermost vertex is: 1 is its edge.
+double reach(const Triangles& t, const Camera& camera) {
+    const glm::dmat4 to_camera = glm::inverse(glm::dmat4(camera.to_world));
+    double out = 0;
+    for (const auto& v : t.positions) {
+        const glm::dvec3 c(to_camera * glm::dvec4(v, 1));
+        if (!(c.z < 0)) return 1e9;
+        out = std::max(out, std::max(std::abs(c.x), std::abs(c.y)) / -c.z / std::tan(camera.yfov / 2));
     }
+    return out;
+}
+
+TEST(Cameras, FramingFillsThePictureWithEveryVertex) {
+    for (const vec3 at : {vec3(0), vec3(1e6f, 0, 0)})
+        for (const vec3 size : {vec3(100), vec3(100, 1, 100), vec3(1, 100, 1), vec3(100, 0, 1)}) {
+            // Both of the triangle's diagonals, so that all corners of its bounds are vertices of something.
+            Scene scene = one_triangle(true, glm::translate(mat4(1), at));
+            auto& p = scene.meshes[0].primitives[0];
+            p.positions.clear(), p.normals.assign(8, {0, 0, 1}), p.indices = {0, 1, 2, 3, 4, 5, 5, 6, 7};
+            for (int i = 0; i < 8; ++i) p.positions.push_back(size * vec3(i & 1, i >> 1 & 1, i >> 2 & 1));
+            const Triangles t = flatten(scene);
+            const double r = reach(t, framing_camera(t));
+            EXPECT_LT(r, 1) << size.x << " " << size.y << " " << size.z;
+            EXPECT_GT(r, 0.8) << size.x << " " << size.y << " " << size.z;
+        }
 }
 
 TEST(Cameras, PickByNameIndexOrDefault) {

@@ -27,6 +27,7 @@ struct Loaded {
 Loaded load(const RenderOptions& options, Progress& progress) {
     Loaded loaded;
     loaded.scene = scenes::load(options.scene);
+    scenes::apply_sky(loaded.scene, options.sky);
     loaded.triangles = scenes::flatten(loaded.scene);
     loaded.camera = scenes::pick_camera(loaded.scene, loaded.triangles, options.camera);
     progress.clear();
@@ -93,6 +94,7 @@ void render(const RenderOptions& options) {
     const auto frame = run.phase("build", [&] { return std::make_unique<passes::Frame>(*device, loaded.scene, loaded.triangles, settings); });
     run.size = frame->size();
     run.settings = settings_json(settings, frame->vpl_bound());
+    run.settings["sky"] = choice_name(sky_choices(), options.sky);
 
     while (number++ < options.repeat) run.frames.push_back(render_frame(run, *device, *frame, loaded.camera));
 

@@ -82,6 +82,12 @@ const Choices<compute::AppendMode>& append_modes() {
     return choices;
 }
 
+const Choices<scenes::SkyChoice>& sky_choices() {
+    using scenes::SkyChoice;
+    static const Choices<SkyChoice> choices = {{"auto", SkyChoice::automatic}, {"on", SkyChoice::on}, {"off", SkyChoice::off}};
+    return choices;
+}
+
 const std::vector<std::string>& layer_names() {
     static const std::vector<std::string> names = {"direct", "indirect", "emission", "albedo", "N", "P", "Z"};
     return names;
@@ -96,6 +102,9 @@ std::shared_ptr<RenderOptions> add_render_options(CLI::App& command) {
                [&o](const std::string& text) { std::tie(o.frame.width, o.frame.height) = parse_size("--size", text); });
     command.add_option("--camera", o.camera, "of the scene; the first unless given, and one that sees all where there is none")
         ->type_name("NAME|INDEX");
+    add_choice(command, "--sky", o.sky, sky_choices(),
+               "light from above, of radiance 1, by " + std::to_string(scenes::default_sky_lights) +
+                   " directional lights;\nauto: for a scene that has no light and no emission");
     add_technique(command, o.frame);
     add_parsed(command, "--memory-limit", "MiB", "", "for all buffers on the device; unless given, what it has", [&o](const std::string& text) {
         o.device.memory_limit = parse_whole("--memory-limit", text, 1, uint64_t(1) << 30) << 20;

@@ -7,12 +7,14 @@
 #include <vector>
 
 #include "passes/frame.hpp"
+#include "scenes/sky.hpp"
 #include "tools/arguments.hpp"
 
 namespace myriad::tools {
 
 struct RenderOptions {
     std::string scene, camera;
+    scenes::SkyChoice sky = scenes::SkyChoice::automatic;
     std::string exr, png, stats, trace;  // files; empty: not wanted
     std::vector<std::string> layers;     // of the EXR beside the beauty: some of layer_names()
     std::optional<float> exposure;       // absent: auto
@@ -24,6 +26,7 @@ struct RenderOptions {
 
 const Choices<passes::Visibility>& visibilities();
 const Choices<compute::AppendMode>& append_modes();
+const Choices<scenes::SkyChoice>& sky_choices();
 const std::vector<std::string>& layer_names();
 
 // Declares the options on `command`; they hold their values once it was parsed and check_outputs has returned.

@@ -11,6 +11,7 @@
 #include "engine/transfer.hpp"
 #include "passes/maps/maps.hpp"
 #include "passes/vpl/vpl.hpp"
+#include "scenes/sky.hpp"
 #include "tools/bench/bench.hpp"
 #include "tools/bench/native_cut.hpp"
 
@@ -167,6 +168,7 @@ void bench_manylods(engine::Device& device, const BenchOptions& options, const R
     const std::vector<uint32_t> counts = options.views.empty() ? std::vector<uint32_t>{256, 1024, 4096} : options.views;
     const uint32_t most = *std::max_element(counts.begin(), counts.end());
     scenes::Scene scene = scenes::load(source, options.seed);
+    scenes::apply_sky(scene, scenes::SkyChoice::automatic);
     const scenes::Triangles triangles = scenes::flatten(scene);
     if (!native_available()) throw DeviceError("this experiment's native rows need a processor with AVX2 and FMA");
 
