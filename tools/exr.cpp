@@ -15,6 +15,7 @@
 #include <cmath>
 #include <deque>
 #include <fstream>
+#include <map>
 
 #include "engine/error.hpp"
 #include "tools/output_file.hpp"
@@ -32,22 +33,74 @@ uint64_t best_ratio(Imf::Compression codec) {
     return codec == Imf::DWAA_COMPRESSION || codec == Imf::DWAB_COMPRESSION ? 1 << 17 : 1 << 11;
 }
 
-// Whether the attributes of a single-part header (name, type, byte count, bytes; an empty name ends them) lie inside the
-// file. The library allocates what an attribute claims, up to 2 GiB, before it finds that the file ends.
-bool header_fits(const std::filesystem::path& path) {
-    const uint64_t end = std::filesystem::file_size(path);
-    std::ifstream in(path, std::ios::binary);
-    in.seekg(8);  // magic number and version
-    std::string name, type;
-    while (std::getline(in, name, '\0') && !name.empty()) {
-        uint8_t b[4];
-        if (!std::getline(in, type, '\0') || !in.read(reinterpret_cast<char*>(b), 4)) return false;
-        const uint32_t bytes = b[0] | b[1] << 8 | b[2] << 16 | uint32_t(b[3]) << 24;
-        if (static_cast<uint64_t>(in.tellg()) + bytes > end) return false;
-        in.seekg(bytes, std::ios::cur);
+// The header of a file, read as far as it takes to know that the library may read it. The library allocates what a value
+// claims, up to 2 GiB, before it finds that the file ends; and it reads values of the types it knows by their type, not
+// by the size that the file gives them, so a wrong size lets it find other attributes than whoever skips by size.
+class HeaderCheck {
+public:
+    explicit HeaderCheck(const std::filesystem::path& path) : in_(path, std::ios::binary), end_(std::filesystem::file_size(path)) {}
+
+    // Whether the attributes of a single-part header (name, type, byte count, bytes; an empty name ends them) lie inside
+    // the file and are what their types say.
+    bool passes() {
+        in_.seekg(8);  // magic number and version
+        std::string name, type;
+        while (std::getline(in_, name, '\0') && !name.empty()) {
+            uint32_t bytes = 0;
+            if (!std::getline(in_, type, '\0') || !word(bytes) || at() + bytes > end_) return false;
+            const uint64_t next = at() + bytes;
+            if (!value(type, bytes) || !in_) return false;
+            in_.seekg(static_cast<std::streamoff>(next));
+        }
+        return in_.good();
     }
-    return in.good();
-}
+
+private:
+    uint64_t at() { return static_cast<uint64_t>(in_.tellg()); }
+
+    bool word(uint32_t& out) {
+        uint8_t b[4];
+        if (!in_.read(reinterpret_cast<char*>(b), 4)) return false;
+        out = b[0] | b[1] << 8 | b[2] << 16 | uint32_t(b[3]) << 24;
+        return true;
+    }
+
+    bool value(const std::string& type, uint32_t bytes) {
+        static const std::map<std::string_view, uint32_t> sizes = {
+            {"box2i", 16}, {"box2f", 16}, {"chromaticities", 32}, {"compression", 1}, {"deepImageState", 1}, {"double", 8}, {"envmap", 1},
+            {"float", 4}, {"int", 4}, {"keycode", 28}, {"lineOrder", 1}, {"m33f", 36}, {"m33d", 72}, {"m44f", 64}, {"m44d", 128},
+            {"rational", 8}, {"tiledesc", 9}, {"timecode", 8}, {"v2i", 8}, {"v2f", 8}, {"v2d", 16}, {"v3i", 12}, {"v3f", 12}, {"v3d", 24}};
+        if (const auto known = sizes.find(type); known != sizes.end()) return bytes == known->second;
+        if (type == "chlist") return channels(bytes);
+        if (type == "stringvector") return strings(bytes);
+        if (type == "floatvector") return bytes % 4 == 0;
+        if (type == "idmanifest") return bytes >= 4;
+        if (type == "preview") {
+            uint32_t width = 0, height = 0;
+            return word(width) && word(height) && bytes >= 8 && uint64_t(width) * height == (bytes - 8) / 4 && bytes % 4 == 0;
+        }
+        return true;  // text, and what the library does not know: it takes these by their size
+    }
+
+    bool channels(uint32_t bytes) {  // name and 16 bytes each; an empty name ends them
+        const uint64_t end = at() + bytes;
+        for (std::string name; std::getline(in_, name, '\0') && !name.empty();) in_.seekg(16, std::ios::cur);
+        return in_ && at() == end;
+    }
+
+    bool strings(uint32_t bytes) {  // byte count and bytes each
+        const uint64_t end = at() + bytes;
+        while (at() < end) {
+            uint32_t length = 0;
+            if (!word(length) || at() + length > end) return false;
+            in_.seekg(length, std::ios::cur);
+        }
+        return at() == end;
+    }
+
+    std::ifstream in_;
+    const uint64_t end_;
+};
 
 struct Output final : Imf::OStream {
     Output(const std::string& name, OutputFile& file) : OStream(name.c_str()), file(file) {}
@@ -134,7 +187,7 @@ Image read_exr(const std::filesystem::path& path) {
         if (deep) throw InputError(cannot + "it holds deep samples; flatten it first");
         if (parts) throw InputError(cannot + "it has several parts; save one part as its own file");
 
-        if (!header_fits(path)) throw damaged("its header does not end");
+        if (!HeaderCheck(path).passes()) throw damaged("its header does not end, or has values of the wrong size");
 
         Imf::InputFile in(name.c_str());
         const Imf::Header& header = in.header();
