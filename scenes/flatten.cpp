@@ -71,7 +71,7 @@ private:
         usable_.resize(world_.size());
         for (size_t i = 0; i < world_.size(); ++i) {
             world_[i] = glm::vec3(to_world * glm::vec4(primitive.positions[i], 1));
-            usable_[i] = finite(world_[i]);
+            usable_[i] = std::abs(world_[i].x) <= farthest && std::abs(world_[i].y) <= farthest && std::abs(world_[i].z) <= farthest;
             defects_.denormal += flush_denormals(world_[i]);
         }
     }
@@ -210,7 +210,7 @@ Triangles flatten(Scene& scene) {
     const auto warn = [&](size_t count, const char* what) {
         if (count) scene.warnings.push_back(std::to_string(count) + what);
     };
-    warn(defects.dropped, " triangles with a non-finite vertex were dropped.");
+    warn(defects.dropped, " triangles with a vertex that is not finite or beyond 1e9 m were dropped.");
     warn(defects.denormal, " vertices with a denormal coordinate had it set to 0.");
     warn(defects.bad_normals, " zero or non-finite normals were computed anew.");
     warn(defects.bad_texcoords, " non-finite texture coordinates were set to 0.");

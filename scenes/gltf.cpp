@@ -28,13 +28,17 @@ bool supported(const std::string& extension) {
 
 void check_extensions(const Place& place, Scene& scene) {
     for (const auto& name : place.model.extensionsRequired)
-        if (!supported(name)) place.fail("the file requires the extension " + name + ", which Myriad does not have", "export without it");
+        if (!supported(name)) place.fail("the file requires the extension " + gltf::quote(name) + ", which Myriad does not have", "export without it");
     std::set<std::string> ignored;
     for (const auto& name : place.model.extensionsUsed)
         if (!supported(name)) ignored.insert(name);
+    if (ignored.empty()) return;
+    constexpr size_t most = 10;
     std::string text;
-    for (const auto& name : ignored) text += (text.empty() ? "ignored extensions: " : ", ") + name;
-    if (!text.empty()) scene.warnings.push_back(text + ".");
+    size_t count = 0;
+    for (const auto& name : ignored)
+        if (count++ < most) text += (text.empty() ? "ignored extensions: " : ", ") + gltf::shown(name);
+    scene.warnings.push_back(text + (count > most ? " and " + std::to_string(count - most) + " more." : "."));
 }
 
 }  // namespace

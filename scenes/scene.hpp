@@ -16,6 +16,10 @@ namespace myriad::scenes {
 
 inline constexpr uint32_t none = ~0u;  // "no texture", "no material" …
 
+// Coordinates beyond this, in metres, are as good as infinite: of what is nearer, squares of distances, areas and fluxes stay
+// finite in 32-bit floats.
+inline constexpr float farthest = 1e9f;
+
 struct Texture {
     std::string name;
     uint32_t width = 0, height = 0;
@@ -105,8 +109,8 @@ struct Triangles {
     glm::vec3 lo{0}, hi{0};                      // bounds of all positions; lo == hi == 0 when empty
 };
 
-// Applies instance transforms, computes missing normals, drops triangles with a non-finite vertex (counted in a warning
-// that is appended to `scene.warnings`). Zero-area triangles stay: they are harmless downstream and keep indices stable.
+// Applies instance transforms, computes missing normals, drops triangles with a vertex that is not finite or beyond
+// `farthest` (counted in a warning that is appended to `scene.warnings`). Zero-area triangles stay: they are harmless downstream and keep indices stable.
 Triangles flatten(Scene& scene);
 
 // A camera that sees the whole scene, for scenes without one.

@@ -214,7 +214,7 @@ TEST(Flatten, KeepsZeroAreaTrianglesWithUnitNormals) {
 }
 
 TEST(Flatten, ExtremeScalesKeepUnitNormals) {
-    for (float s : {1e-18f, 1e-6f, 1e6f, 1e18f}) {
+    for (float s : {1e-18f, 1e-6f, 1e6f, 0.5f * farthest}) {
         for (bool normals : {false, true}) {
             Scene scene = one_triangle(normals, glm::scale(mat4(1), vec3(s)));
             expect_near(flatten(scene).normals[0], {0, 0, 1});

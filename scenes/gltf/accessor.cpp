@@ -77,8 +77,7 @@ Elements elements(const Place& place, int view, size_t offset, size_t count, siz
 const Accessor& get(const Place& place, int index) {
     if (index < 0 || size_t(index) >= place.model.accessors.size())
         place.fail("there is no accessor " + std::to_string(index), "export the file again");
-    const Accessor& accessor = place.model.accessors[size_t(index)];
-    return accessor;
+    return place.model.accessors[size_t(index)];
 }
 
 // The elements of an accessor's own buffer view; none where it has no view.
@@ -125,12 +124,14 @@ void Place::spend(uint64_t count, uint64_t size) const {
              "the file is damaged or made to exhaust memory, export it again");
 }
 
-std::string quote(const std::string& text) {
-    std::string out = text.substr(0, limits::quoted_characters);
+std::string shown(const std::string& text) {
+    std::string out = text.substr(0, limits::shown_characters);
     for (char& c : out)
         if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = '?';
-    return '"' + out + (out.size() < text.size() ? " …\"" : "\"");
+    return out.size() < text.size() ? out + " …" : out;
 }
+
+std::string quote(const std::string& text) { return '"' + shown(text) + '"'; }
 
 Range buffer_view(const Place& place, int index) {
     const auto& model = place.model;

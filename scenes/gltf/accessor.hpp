@@ -24,7 +24,8 @@ struct Place {
     void spend(uint64_t count, uint64_t size) const;
 };
 
-// Text of the file's own, fit for a message: in quotes, shortened, without control characters.
+// Text of the file's own, fit for a message: shortened, without control characters; and the same in quotes.
+std::string shown(const std::string& text);
 std::string quote(const std::string& text);
 
 // The bytes of a buffer view.

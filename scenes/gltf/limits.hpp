@@ -25,15 +25,14 @@ inline constexpr uint32_t image_side = 1u << 15;
 // Scans of a progressive JPEG, each of which costs a walk over the whole picture. Encoders write about ten.
 inline constexpr int jpeg_scans = 100;
 
-// Coordinates in the world, in metres. Squares of distances, areas and sums of areas stay finite in 32-bit floats.
-inline constexpr float coordinate = 1e12f;
+// Radiance, radiant intensity and irradiance. With scenes of scenes::farthest across, fluxes stay finite in 32-bit floats.
+inline constexpr double light = 1e18;
 
-// Radiance, radiant intensity and irradiance: what the sun has in W/sr is 3e25. Products with areas and solid angles,
-// and sums over lights, stay finite in 32-bit floats.
-inline constexpr float light = 1e30f;
+// Offsets and scales of textures.
+inline constexpr double factor = 1e6;
 
 // Characters of a name or URI that a message repeats.
-inline constexpr size_t quoted_characters = 100;
+inline constexpr size_t shown_characters = 100;
 
 }  // namespace myriad::scenes::gltf::limits
 

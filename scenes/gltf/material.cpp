@@ -13,7 +13,7 @@ float factor(double value) { return float(std::clamp(value, 0.0, 1.0)); }
 float emissive_strength(const Place& place, const tinygltf::Material& material) {
     const tinygltf::Value* strength = extension(material, "KHR_materials_emissive_strength");
     const double value = strength ? number_in(place, *strength, "emissiveStrength", 1) : 1;
-    if (!(value >= 0) || value > 1e30) place.fail("emissiveStrength is not a number from 0 to 1e30", "correct it");
+    if (!(value >= 0 && value <= limits::light)) place.fail("emissiveStrength is not a number from 0 to 1e18", "correct it");
     return float(value);
 }
 
@@ -43,7 +43,7 @@ Material read_material(const Place& place, const tinygltf::Material& in, Texture
     for (int c = 0; c < 3; ++c)
         if (size_t(c) < in.emissiveFactor.size()) out.emissive[c] = factor(in.emissiveFactor[size_t(c)]) * strength;
     if (out.emissive != glm::vec3(0)) out.emissive_texture = textures.use(place, in.emissiveTexture);
-    if (!std::isfinite(in.normalTexture.scale)) place.fail("the scale of its normal texture is not a number", "correct it");
+    if (!(std::abs(in.normalTexture.scale) <= limits::factor)) place.fail("the scale of its normal texture is not a number up to a million", "correct it");
     out.normal_scale = float(in.normalTexture.scale);
     if (out.normal_scale != 0) out.normal_texture = textures.use(place, in.normalTexture);
     return out;

@@ -33,24 +33,52 @@ glm::dmat4 local_transform(const Place& place, const tinygltf::Node& node) {
     return compose(translation, rotation, scale);
 }
 
-bool finite(const glm::mat4& m) {
-    return std::all_of(glm::value_ptr(m), glm::value_ptr(m) + 16, [](float x) { return std::isfinite(x); });
+// Whether a transform is one that a scene can be computed with.
+bool sane(const glm::dmat4& m) {
+    const glm::mat4 narrow(m);
+    const bool near = glm::all(glm::lessThanEqual(glm::abs(glm::vec3(narrow[3])), glm::vec3(farthest)));  // NaN is not
+    return near && std::all_of(glm::value_ptr(narrow), glm::value_ptr(narrow) + 16, [](float x) { return std::isfinite(x); });
 }
+
+// The direction of a vector, where it has one.
+std::optional<glm::dvec3> direction(const glm::dvec3& v) {
+    const double length = glm::length(v);
+    if (!(length > 0 && std::isfinite(length))) return {};
+    return v / length;
+}
+
+// What stands in the hierarchy but cannot be used, by what is the matter.
+struct LeftOut {
+    size_t orthographic = 0, cameras = 0, lights = 0, instances = 0;
+
+    void warn(Scene& scene) const {
+        const auto say = [&](size_t count, const char* what) {
+            if (count) scene.warnings.push_back(std::to_string(count) + what);
+        };
+        say(orthographic, " orthographic cameras were left out.");
+        say(cameras, " cameras were left out, for their nodes are scaled to nothing, not finite or beyond 1e9 m.");
+        say(lights, " lights were left out, for their nodes are scaled to nothing, not finite or beyond 1e9 m.");
+        say(instances, " instances of a mesh were left out, for their transforms are not finite or beyond 1e9 m.");
+    }
+};
 
 // A camera has a place and looks along -Z, with its Y axis as far up as that leaves; scale in the hierarchy above it does
-// not concern it.
-void add_camera(const Place& place, const tinygltf::Node& node, const tinygltf::Camera& in, const glm::dmat4& to_world, Scene& scene) {
+// not concern it, but for a scale of 0. False where that leaves no camera.
+bool add_camera(const Place& place, const tinygltf::Node& node, const tinygltf::Camera& in, const glm::dmat4& to_world, Scene& scene) {
     const std::string name = !node.name.empty() ? node.name : in.name;  // one glTF camera may stand at several nodes
-    const Place here = place.at("camera " + quote(name));
-    Camera camera{name, glm::mat4(1), float(in.perspective.yfov)};
-    if (!(camera.yfov > 0) || !(camera.yfov < 3.14159f)) here.fail("yfov is not between 0 and pi", "correct it");
-    const glm::dvec3 back = glm::normalize(glm::dvec3(to_world[2])), right = glm::normalize(glm::cross(glm::dvec3(to_world[1]), back));
-    camera.to_world = glm::mat4(glm::vec4(right, 0), glm::vec4(glm::cross(back, right), 0), glm::vec4(back, 0), to_world[3]);
-    if (!finite(camera.to_world)) here.fail("its transform is singular", "correct its scale");
-    scene.cameras.push_back(camera);
+    const double yfov = in.perspective.yfov;
+    if (!(yfov > 1e-4) || !(yfov < 3.14159)) place.at("camera " + quote(name)).fail("yfov is not between 0 and pi", "correct it");
+    const auto back = direction(glm::dvec3(to_world[2]));
+    const auto right = back ? direction(glm::cross(glm::dvec3(to_world[1]), *back)) : back;
+    if (!right || !sane(to_world)) return false;
+    const glm::dmat3 axes(*right, glm::cross(*back, *right), *back);
+    scene.cameras.push_back({name, glm::mat4(glm::mat3(axes)), float(yfov)});
+    scene.cameras.back().to_world[3] = to_world[3];
+    return true;
 }
 
-void add_light(const Place& place, const tinygltf::Node& node, const tinygltf::Value& extension, const glm::dmat4& to_world, Scene& scene) {
+// False where the transform leaves no light.
+bool add_light(const Place& place, const tinygltf::Node& node, const tinygltf::Value& extension, const glm::dmat4& to_world, Scene& scene) {
     const int index = index_in(place.at(lights_extension), extension, "light").value_or(-1);
     if (index < 0 || size_t(index) >= place.model.lights.size()) place.fail("there is no light " + std::to_string(index), "export the file again");
     const auto& in = place.model.lights[size_t(index)];
@@ -60,20 +88,24 @@ void add_light(const Place& place, const tinygltf::Node& node, const tinygltf::V
     if (in.type == "directional") light.type = Light::Type::directional;
     else if (in.type == "spot") light.type = Light::Type::spot;
     else if (in.type != "point") here.fail("its type is " + quote(in.type), "use point, spot or directional");
-    light.position = glm::vec3(to_world[3]);
-    light.direction = glm::vec3(glm::normalize(-glm::dvec3(to_world[2])));
     if (in.color.size() != 0 && in.color.size() != 3) here.fail("its colour has not three numbers", "correct it");
-    for (int c = 0; c < 3; ++c) light.intensity[c] = float((in.color.empty() ? 1 : in.color[size_t(c)]) * in.intensity);
+    for (int c = 0; c < 3; ++c) {
+        const double value = (in.color.empty() ? 1 : in.color[size_t(c)]) * in.intensity;
+        if (!(value >= 0 && value <= limits::light)) here.fail("its colour times its intensity is not a number from 0 to 1e18", "correct it");
+        light.intensity[c] = float(value);
+    }
     if (light.type == Light::Type::spot) {
         light.inner_cone = float(in.spot.innerConeAngle);
         light.outer_cone = float(in.spot.outerConeAngle);
         if (!(light.inner_cone >= 0) || !(light.inner_cone <= light.outer_cone) || !(light.outer_cone <= 1.5707964f))
             here.fail("its cone angles are not 0 <= inner <= outer <= pi/2", "correct them");
     }
-    const float sum = glm::dot(light.direction, glm::vec3(1)) + glm::dot(light.position, glm::vec3(1)) + glm::dot(light.intensity, glm::vec3(1));
-    if (!std::isfinite(sum) || glm::any(glm::lessThan(light.intensity, glm::vec3(0))))
-        here.fail("its intensity is negative or its transform is singular", "correct it");
+    const auto along = direction(-glm::dvec3(to_world[2]));
+    if (!sane(to_world) || (!along && light.type != Light::Type::point)) return false;
+    light.position = glm::vec3(to_world[3]);
+    if (along) light.direction = glm::vec3(*along);
     scene.lights.push_back(light);
+    return true;
 }
 
 // EXT_mesh_gpu_instancing: transforms of the mesh within the node; one attribute that says how many is enough.
@@ -119,7 +151,7 @@ public:
             stack_.pop_back();
             visit(index, to_world);
         }
-        if (orthographic_) scene_.warnings.push_back(std::to_string(orthographic_) + " orthographic cameras were left out.");
+        left_out_.warn(scene_);
     }
 
 private:
@@ -139,7 +171,7 @@ private:
         const glm::dmat4 to_world = parent * local_transform(place, node);
         if (node.mesh >= 0) add_instances(place, node, to_world);
         if (node.camera >= 0) add_camera(place, node, to_world);
-        if (const auto* light = extension(node, lights_extension)) add_light(place, node, *light, to_world, scene_);
+        if (const auto* light = extension(node, lights_extension)) left_out_.lights += !add_light(place, node, *light, to_world, scene_);
         push(place, node.children, to_world);
     }
 
@@ -147,23 +179,28 @@ private:
         if (size_t(node.mesh) >= place.model.meshes.size()) place.fail("there is no mesh " + std::to_string(node.mesh), "export the file again");
         const uint32_t mesh = uint32_t(node.mesh);
         const auto* instancing = extension(node, instancing_extension);
-        if (!instancing) scene_.instances.push_back({mesh, glm::mat4(to_world)});
+        const auto add = [&](const glm::dmat4& m) {
+            if (sane(m)) scene_.instances.push_back({mesh, glm::mat4(m)});
+            else ++left_out_.instances;
+        };
+        if (!instancing) add(to_world);
         else
-            for (const glm::dmat4& within : instance_transforms(place, *instancing)) scene_.instances.push_back({mesh, glm::mat4(to_world * within)});
+            for (const glm::dmat4& within : instance_transforms(place, *instancing)) add(to_world * within);
     }
 
     void add_camera(const Place& place, const tinygltf::Node& node, const glm::dmat4& to_world) {
         const auto& cameras = place.model.cameras;
         if (size_t(node.camera) >= cameras.size()) place.fail("there is no camera " + std::to_string(node.camera), "export the file again");
-        if (cameras[size_t(node.camera)].type == "perspective") gltf::add_camera(place, node, cameras[size_t(node.camera)], to_world, scene_);
-        else ++orthographic_;
+        const tinygltf::Camera& camera = cameras[size_t(node.camera)];
+        if (camera.type != "perspective") ++left_out_.orthographic;
+        else left_out_.cameras += !gltf::add_camera(place, node, camera, to_world, scene_);
     }
 
     const Place& place_;
     Scene& scene_;
     std::vector<bool> seen_;
     std::vector<std::pair<int, glm::dmat4>> stack_;
-    size_t orthographic_ = 0;
+    LeftOut left_out_;
 };
 
 // The roots of a file without scenes: every node that is nobody's child.

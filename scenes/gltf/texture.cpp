@@ -23,6 +23,8 @@ Texture::Wrap wrap(int mode) {
 glm::mat3x2 texture_transform(const Place& place, const tinygltf::Value& extension) {
     const glm::dvec2 offset = pair_in(place, extension, "offset", glm::dvec2(0)), scale = pair_in(place, extension, "scale", glm::dvec2(1));
     const double angle = number_in(place, extension, "rotation", 0), c = std::cos(angle), s = std::sin(angle);
+    for (const double number : {offset.x, offset.y, scale.x, scale.y})
+        if (std::abs(number) > limits::factor) place.fail("its offset or scale is beyond a million", "correct it");
     return glm::mat3x2(scale.x * c, -scale.x * s, scale.y * s, scale.y * c, offset.x, offset.y);
 }
 
