@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Builds Myriad, configuring first where that has not been done.
 #
-#   tools/build.sh [--preset default|debug|asan] [--configure] [TARGET…]
+#   tools/build.sh [--preset default|debug|asan|fuzz] [--configure] [TARGET…]
 #
 # Without targets it builds everything; --configure stops before building. Presets: CMakePresets.json.
 set -euo pipefail

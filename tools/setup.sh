@@ -4,6 +4,7 @@
 #   tools/setup.sh                 what building and rendering need
 #   tools/setup.sh test            what the tests need as well
 #   tools/setup.sh corpus          what fetch_corpus and gallery need as well
+#   tools/setup.sh fuzz            what tools/fuzz.sh needs as well
 #   tools/setup.sh --upgrade-mesa  the same, and a newer Mesa from backports in place of an old one
 #
 # Exit status: 0 everything is there; 2 something is missing and may not be installed from here.
@@ -128,7 +129,7 @@ main() {
   local sections=(build run) upgrade="" wanted todo gpu version
   for argument in "$@"; do
     case $argument in
-      test | corpus) sections+=("$argument") ;;
+      test | corpus | fuzz) sections+=("$argument") ;;
       --upgrade-mesa) upgrade=yes ;;
       *) sed -n '2,/^set/s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; return 2 ;;
     esac
