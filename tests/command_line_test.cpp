@@ -103,7 +103,7 @@ TEST_F(command_line, help_names_every_option) {
                     "--aov",     "--device",   "--repeat", "--float", "--quiet",   "1:1",       "builtin:cornell", "W/sr"}},
         {"compare", {"REF", "TEST", "--json", "--fail-above", "--fail-below", "--layer", "--diff", "--tolerance"}},
         {"bench", {"--json"}},
-        {"convert", {"IN", "OUT", "--unit", "--up", "--crease", "--seed", "--quiet", ".gltf", ".glb", "builtin:NAME"}},
+        {"convert", {"IN", "OUT", "--unit", "--up", "--crease", "--colors", "--seed", "--quiet", ".gltf", ".glb", ".obj", ".ply.gz", ".stl", ".fbx", ".dae", "builtin:NAME"}},
         {"info", {"--json", "--device"}}};
     for (const auto& [command, names] : options) {
         succeed(command.empty() ? Arguments{"-h"} : Arguments{command, "-h"});
@@ -329,6 +329,12 @@ TEST_F(command_line, convert) {
     EXPECT_TRUE(contains(last.out, "1.74 x 1.71 x 1.74 m")) << last.out;
     EXPECT_TRUE(bytes_of(folder / "b.glb") == bytes_of(folder / "c.glb"));
     EXPECT_EQ(folder.names(), (std::vector<std::string>{"a.glb", "b.glb", "c.glb"}));
+
+    put(folder / "a.obj", "mtllib gone.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const Outcome o = myriad_program({"convert", folder / "a.obj", folder / "d.glb"});
+    EXPECT_EQ(o.status, 0) << o.err;
+    EXPECT_TRUE(o.err.starts_with("warning: ") && contains(o.err, "gone.mtl")) << o.err;  // a texture or material less is no failure
+    EXPECT_TRUE(contains(o.out, "1 triangle in 1 mesh")) << o.out;
 }
 
 TEST_F(command_line, convert_refuses) {
@@ -346,6 +352,8 @@ TEST_F(command_line, convert_refuses) {
     for (const char* unit : {"0", "-1", "nan", "mile", ""}) refuse(2, {"convert", "builtin:cornell", glb, "--unit", unit}, "mm, cm, m, in, ft");
     refuse(2, {"convert", "builtin:cornell", glb, "--up", "w"}, "x, y, z");
     refuse(2, {"convert", "builtin:cornell", glb, "--crease", "181"}, "--crease");
+    put(other / "bad.obj", "v 0 0 0\nf 1 2 3\n");
+    refuse(2, {"convert", other / "bad.obj", glb}, "bad.obj: the file cannot be read");
     put(other / "empty.gltf", R"({"asset": {"version": "2.0"}})");
     refuse(2, {"convert", other / "empty.gltf", glb}, "nothing in it");
 }

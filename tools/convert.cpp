@@ -125,6 +125,8 @@ void add_convert(CLI::App& app) {
     });
     add_parsed(*command, "--crease", "DEGREES", "", "where IN has no normals: edges that turn less are smoothed, 0 for none; else by format",
                [options](const std::string& text) { options->import.crease = parse_number("--crease", text, 0, 180); });
+    add_choice(*command, "--colors", options->import.linear_colors, {{"srgb", false}, {"linear", true}},
+               "what colours of materials and vertices in IN are; glTF's are linear always");
     add_whole(*command, "--seed", options->seed, 0, UINT32_MAX, "for built-in scenes");
     command->add_flag("-q,--quiet", options->quiet, "only warnings and errors");
     command->footer(footer());

@@ -5,10 +5,9 @@
 #include <filesystem>
 #include <new>
 
-#include <glm/gtc/matrix_transform.hpp>
-
 #include "engine/error.hpp"
 #include "scenes/gltf.hpp"
+#include "scenes/import/assimp/read.hpp"
 #include "scenes/import/embree.hpp"
 #include "scenes/import/ibsp.hpp"
 #include "scenes/import/tidy.hpp"
@@ -39,18 +38,16 @@ const Format& format_of(const std::string& path) {
     return *found;
 }
 
-// Turns the file's axes so that `up` points along +Y, by a rotation: what was seen mirrored stays so, and no more.
-glm::dmat4 upright(Axis up) {
-    if (up == Axis::x) return glm::rotate(glm::dmat4(1), glm::radians(90.0), glm::dvec3(0, 0, 1));
-    if (up == Axis::z) return glm::rotate(glm::dmat4(1), glm::radians(-90.0), glm::dvec3(1, 0, 0));
-    return glm::dmat4(1);
-}
-
 }  // namespace
 
 const std::vector<Format>& formats() {
     static const std::vector<Format> list = {
-        {{".gltf", ".glb"}, "glTF 2.0", read_gltf},
+        {{".gltf", ".glb"}, "glTF 2.0, with the files that it names", read_gltf},
+        {{".obj", ".obj.gz"}, "Wavefront OBJ with its MTL; metres, +Y up", importing::read_assimp},
+        {{".ply", ".ply.gz"}, "PLY, vertex colours too; metres, +Y up", importing::read_assimp},
+        {{".stl", ".stl.gz"}, "STL; millimetres, +Z up", importing::read_assimp},
+        {{".fbx"}, "Autodesk FBX; the file says its unit and axis", importing::read_assimp},
+        {{".dae"}, "Collada; the file says its unit and axis", importing::read_assimp},
         {{".bsp"}, "maps of Quake III and OpenArena (IBSP 46)", importing::import_ibsp},
         {{".xml"}, "strands of Embree's scenes, with their .bin or .bin.gz beside", importing::import_embree},
     };

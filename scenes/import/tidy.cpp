@@ -1,8 +1,10 @@
 #include "scenes/import/tidy.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 #include <unordered_map>
 
@@ -170,6 +172,13 @@ void drop_unused(Scene& scene) {
 
 }  // namespace
 
+glm::dmat4 upright(Axis up) {
+    // Column by column: where the file's x, y and z go. Without sines, which would leave 1e-17 where there is 0.
+    if (up == Axis::x) return {0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    if (up == Axis::z) return {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1};
+    return glm::dmat4(1);
+}
+
 void transform(Scene& scene, const glm::dmat4& rotation, double scale) {
     const glm::dmat4 m = glm::scale(glm::dmat4(1), glm::dvec3(scale)) * rotation;
     if (m == glm::dmat4(1)) return;
@@ -182,6 +191,45 @@ void transform(Scene& scene, const glm::dmat4& rotation, double scale) {
         light.position = glm::vec3(m * glm::dvec4(light.position, 1));
         light.direction = glm::vec3(rotation * glm::dvec4(light.direction, 0));
     }
+}
+
+void weld(Primitive& p) {
+    // Of each vertex, all floats that it has, and a hash of them.
+    const auto each_float = [&](uint32_t i, auto action) {
+        const auto all = [&](const auto& list) {
+            if (list.empty()) return;
+            for (int c = 0; c < list[i].length(); ++c) action(std::bit_cast<uint32_t>(list[i][c]));
+        };
+        all(p.positions), all(p.normals), all(p.tangents), all(p.texcoords), all(p.texcoords1), all(p.colors);
+    };
+    const auto hash = [&](uint32_t i) {
+        uint64_t h = 0;
+        each_float(i, [&](uint32_t bits) { h = (std::rotl(h, 25) ^ bits) * 0x9E3779B97F4A7C15u; });
+        return h ^ h >> 32;
+    };
+    const auto same = [&](uint32_t i, uint32_t j) {
+        const auto in = [&](const auto& list) { return list.empty() || std::memcmp(&list[i], &list[j], sizeof list[0]) == 0; };
+        return in(p.positions) && in(p.normals) && in(p.tangents) && in(p.texcoords) && in(p.texcoords1) && in(p.colors);
+    };
+    // Open addressing, at most half full.
+    std::vector<uint32_t> table(std::bit_ceil(2 * p.positions.size() + 1), none), number(p.positions.size(), none);
+    Primitive out;
+    for (uint32_t& index : p.indices) {
+        if (number[index] == none) {
+            size_t at = hash(index) & (table.size() - 1);
+            while (table[at] != none && !same(table[at], index)) at = (at + 1) & (table.size() - 1);
+            if (table[at] == none) {
+                table[at] = index;
+                number[index] = uint32_t(out.positions.size());
+                append_vertex(out, p, index);
+            }
+            number[index] = number[table[at]];
+        }
+        index = number[index];
+    }
+    out.indices = std::move(p.indices);
+    out.material = p.material;
+    p = std::move(out);
 }
 
 void smooth_normals(Primitive& p, float crease) {
