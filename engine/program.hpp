@@ -9,7 +9,8 @@
 
 namespace myriad::engine {
 
-// Specialisation constants by id. Ids 0 (workgroup size) and 1 (plain groups) belong to the engine; kernels use 2 and up.
+// Specialisation constants by id. Ids 0 (workgroup size) and 1 (plain groups) belong to the engine; kernels use 2 and up, and what a
+// scene asks of all kernels that read it starts at 16.
 using Constants = std::map<uint32_t, uint32_t>;
 
 // Programs are values: the pipeline of a name and its constants is made once a device and lives as long as the device does,

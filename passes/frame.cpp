@@ -17,12 +17,12 @@ uint32_t block_for(uint32_t vpls, uint32_t subset) {
     return block;
 }
 
-double total_area(const scenes::Triangles& t) {
+double total_area(const compute::WorldTriangles& world) {
     double area = 0;
-    for (const glm::uvec4& i : t.triangles) {
-        const glm::dvec3 a = t.positions[i.x], b = t.positions[i.y], c = t.positions[i.z];
+    world.for_each([&](uint32_t, uint32_t, const Corners& t) {
+        const glm::dvec3 a = t.p0, b = t.p1, c = t.p2;
         area += 0.5 * glm::length(glm::cross(b - a, c - a));
-    }
+    });
     return area;
 }
 
@@ -33,21 +33,27 @@ GatherVisibility gather_visibility(Visibility v) {
 }  // namespace
 
 Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles, const FrameSettings& settings)
+    : Frame(device, scene, triangles, world_triangles(triangles), settings) {}
+
+Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles, const compute::WorldTriangles& world,
+             const FrameSettings& settings)
     : device_(device), settings_(settings), recorder_(device), geometry_(device, scene, triangles), lights_(device, scene, triangles),
-      bvh_(device, triangles.positions, triangles.triangles), gbuffer_(device, settings.width, settings.height),
+      bvh_(device, world), gbuffer_(device, settings.width, settings.height, bvh_.constants()),
       compose_(device, settings.width, settings.height),
       exhausted_(device, "frame", "exhausted walks", 1), host_words_(device, "frame", "frame words", 5, engine::Location::host) {
     const glm::vec3 far = glm::max(glm::abs(triangles.lo), glm::abs(triangles.hi));
     reach_ = std::max({far.x, far.y, far.z});
-    const double area = total_area(triangles);
+    const double area = total_area(world);
     vpl_bound_ = settings.vpl_bound > 0 ? settings.vpl_bound : area > 0 ? float(std::min(3.14159265 * settings.vpls / area, 1e30)) : 1e30f;
     block_ = block_for(settings.vpls, settings.subset);
-    size_.triangles = triangles.triangles.size();
+    size_.triangles = world.count();
+    size_.stored_triangles = triangles.triangles.size();
+    size_.instances = std::count_if(world.instances.begin(), world.instances.end(), [](const Instance& i) { return !(i.flags & instance_in_world); });
     size_.lights = lights_.count();
     size_.bvh_nodes = bvh_.nodes();
 
-    if (DirectPass::needed(lights_)) direct_.emplace(device, settings.width, settings.height);
-    if (lights_.power() > 0 && settings.vpls > 0 && !triangles.triangles.empty()) make_indirect(triangles);
+    if (DirectPass::needed(lights_)) direct_.emplace(device, settings.width, settings.height, 0, bvh_.constants());
+    if (lights_.power() > 0 && settings.vpls > 0 && !triangles.triangles.empty()) make_indirect(world);
     report("compiling kernels", 0);
     warm_up_ms_ = recorder_.warm_up();
     if (!vpl_) return;
@@ -55,18 +61,18 @@ Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::T
     vpl_->prepare(recorder_, geometry_, bvh_, lights_, settings.bounces, settings.seed);
     if (!tree_) return;
     auto scope = recorder_.scope("refit");
-    tree_->refit(recorder_, geometry_.positions(), geometry_.triangles());
+    tree_->refit(recorder_, geometry_.positions(), geometry_.triangles(), geometry_.instances());
 }
 
-void Frame::make_indirect(const scenes::Triangles& triangles) {
+void Frame::make_indirect(const compute::WorldTriangles& world) {
     const FrameSettings& settings = settings_;
-    vpl_.emplace(device_, settings.vpls);
+    vpl_.emplace(device_, settings.vpls, bvh_.constants());
     vpl_->sure_paths(lights_, settings.bounces);  // throws when not one path fits
-    gather_.emplace(device_, gather_visibility(settings.visibility), settings.width, settings.height);
+    gather_.emplace(device_, gather_visibility(settings.visibility), settings.width, settings.height, bvh_.constants());
     if (settings.filter && block_ > 1) filter_.emplace(device_, settings.width, settings.height);
     if (settings.visibility != Visibility::manylods) return;
     report("sampling the surface and sorting the samples", 0);
-    tree_.emplace(device_, triangles.positions, triangles.triangles, settings.log2_samples, settings.seed);
+    tree_.emplace(device_, world, settings.log2_samples, settings.seed);
     size_.samples = tree_->leaves();
     size_.bsh_blocks = tree_->blocks();
     maps_.emplace(device_, settings.maps, settings.vpls, block_ * block_);

@@ -43,7 +43,9 @@ struct FrameSettings {
 };
 
 struct SceneSize {
-    uint64_t triangles = 0, samples = 0, bsh_blocks = 0, bvh_nodes = 0, lights = 0;
+    uint64_t triangles = 0;                       // in the world
+    uint64_t stored_triangles = 0, instances = 0; // fewer where instances share them; instances that do
+    uint64_t samples = 0, bsh_blocks = 0, bvh_nodes = 0, lights = 0;
 };
 
 struct FrameCounters {
@@ -78,7 +80,9 @@ public:
     double warm_up_ms() const { return warm_up_ms_; }  // compiling kernels, at construction
 
 private:
-    void make_indirect(const scenes::Triangles& triangles);
+    Frame(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles, const compute::WorldTriangles& world,
+          const FrameSettings& settings);
+    void make_indirect(const compute::WorldTriangles& world);
     void gather_indirect(float pixel_angle);
     void read_back_words();
     void report(const std::string& stage, double done) const;

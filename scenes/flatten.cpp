@@ -1,10 +1,11 @@
-// Instances to world-space triangles, with every defect that a vertex can have repaired and counted.
+// Instances to triangles, in world space or shared, with every defect that a vertex can have repaired and counted.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "engine/error.hpp"
 #include "scenes/scene.hpp"
+#include "scenes/sharing.hpp"
 
 namespace myriad::scenes {
 namespace {
@@ -178,34 +179,75 @@ void reserve(Triangles& out, const Attributes& attributes, size_t vertices, size
     out.triangles.reserve(triangles);
 }
 
+// Bounds over what the triangles use: an unusable vertex was parked at the origin.
+void find_bounds(Triangles& out, const std::vector<Placement>& placements) {
+    glm::vec3 lo(std::numeric_limits<float>::infinity()), hi(-lo);
+    for (const Placement& placement : placements)
+        for (uint32_t i = placement.first_triangle; i < placement.first_triangle + placement.count; ++i)
+            for (int k = 0; k < 3; ++k) {
+                const glm::vec3& p = out.positions[out.triangles[i][k]];
+                const glm::vec3 world = placement.in_world ? p : glm::vec3(placement.to_world * glm::vec4(p, 1));
+                lo = glm::min(lo, world), hi = glm::max(hi, world);
+            }
+    if (out.count() > 0) out.lo = lo, out.hi = hi;
+}
+
 }  // namespace
 
-Triangles flatten(Scene& scene) {
+Triangles flatten(Scene& scene, Sharing sharing) {
     Triangles out;
     Defects defects;
     Attributes attributes;
+    const SharingPlan plan = plan_sharing(scene, sharing);
+    // What comes to be stored: each instance, but of shared meshes the first.
+    std::vector<bool> stored(scene.meshes.size());
     size_t vertices = 0, triangles = 0;
-    for (const Instance& instance : scene.instances)
-        for (const Primitive& p : scene.meshes[instance.mesh].primitives) {
+    uint64_t in_the_world = 0;
+    for (size_t i = 0; i < scene.instances.size(); ++i) {
+        const uint32_t mesh = scene.instances[i].mesh;
+        const bool again = plan.shares[i] && stored[mesh];
+        if (plan.shares[i]) stored[mesh] = true;
+        for (const Primitive& p : scene.meshes[mesh].primitives) {
+            in_the_world += p.indices.size() / 3;
+            if (again) continue;
             attributes.colors |= !p.colors.empty();
             attributes.texcoords1 |= !p.texcoords1.empty();
             attributes.tangents |= !p.tangents.empty() && !p.normals.empty();
             vertices += p.normals.empty() ? p.indices.size() : p.positions.size();
             triangles += p.indices.size() / 3;
         }
-    if (vertices >= none || triangles >= none / 3)
+    }
+    if (vertices >= none || in_the_world >= none / 3)
         throw InputError("the scene has more than 2^32 vertices; give fewer instances or coarser meshes.");
     reserve(out, attributes, vertices, triangles);
-    Flattener flattener(out, attributes, defects);
-    for (const Instance& instance : scene.instances)
-        for (const Primitive& primitive : scene.meshes[instance.mesh].primitives)
-            flattener.append(primitive, instance.to_world);
 
-    // Bounds over what the triangles use: an unusable vertex was parked at the origin.
-    glm::vec3 lo(std::numeric_limits<float>::infinity()), hi(-lo);
-    for (const auto& t : out.triangles)
-        for (int k = 0; k < 3; ++k) lo = glm::min(lo, out.positions[t[k]]), hi = glm::max(hi, out.positions[t[k]]);
-    if (!out.triangles.empty()) out.lo = lo, out.hi = hi;
+    Flattener flattener(out, attributes, defects);
+    std::vector<Placement> placements, first_of(scene.meshes.size());
+    for (size_t i = 0; i < scene.instances.size(); ++i) {
+        const auto& [mesh, to_world] = scene.instances[i];
+        Placement& first = first_of[mesh];  // of a shared mesh: where its triangles are, once they are
+        Placement placement{.to_world = plan.shares[i] ? to_world : glm::mat4(1), .in_world = !plan.shares[i],
+                            .first_triangle = uint32_t(out.triangles.size())};
+        if (plan.shares[i] && !first.in_world) {
+            placement.first_triangle = first.first_triangle, placement.count = first.count;
+        } else {
+            for (const Primitive& primitive : scene.meshes[mesh].primitives) flattener.append(primitive, plan.shares[i] ? glm::mat4(1) : to_world);
+            placement.count = uint32_t(out.triangles.size()) - placement.first_triangle;
+            if (plan.shares[i]) first = placement;
+        }
+        if (placement.count == 0) continue;
+        if (!placements.empty()) {
+            Placement& last = placements.back();
+            placement.first_id = last.first_id + last.count;
+            if (last.in_world && placement.in_world && last.first_triangle + last.count == placement.first_triangle) {
+                last.count += placement.count;
+                continue;
+            }
+        }
+        placements.push_back(placement);
+    }
+    if (std::any_of(placements.begin(), placements.end(), [](const Placement& p) { return !p.in_world; })) out.placements = placements;
+    find_bounds(out, placements);
 
     const auto warn = [&](size_t count, const char* what) {
         if (count) scene.warnings.push_back(std::to_string(count) + what);

@@ -97,7 +97,16 @@ struct Scene {
     std::vector<std::string> warnings; // harmless defects that were repaired or ignored, one sentence each
 };
 
-// All triangles of the scene in world space, in one index space: what goes to the device.
+// A range of the scene's triangles: an instance of a mesh that is stored once, or what is stored in world space as it is.
+struct Placement {
+    glm::mat4 to_world{1};          // invertible; identity where in_world
+    bool in_world = true;
+    uint32_t first_id = 0;          // in the world these are triangles first_id + i …
+    uint32_t first_triangle = 0;    // … stored at first_triangle + i,
+    uint32_t count = 0;             // i < count
+};
+
+// All triangles of the scene in one index space, the world's ids: what goes to the device.
 struct Triangles {
     std::vector<glm::vec3> positions, normals;   // one a vertex; normals are unit
     std::vector<glm::vec2> texcoords;            // one a vertex
@@ -106,12 +115,35 @@ struct Triangles {
     std::vector<glm::vec2> texcoords1;
     std::vector<glm::vec4> tangents;
     std::vector<glm::uvec4> triangles;           // three vertex indices, then the material
-    glm::vec3 lo{0}, hi{0};                      // bounds of all positions; lo == hi == 0 when empty
+    // By ids, without gaps. Empty where no mesh is shared: all is in world space, and a triangle's id is its index.
+    std::vector<Placement> placements;
+    glm::vec3 lo{0}, hi{0};                      // bounds of what triangles use, in the world; lo == hi == 0 when empty
+
+    uint32_t count() const {                     // of the world's triangles
+        return placements.empty() ? uint32_t(triangles.size()) : placements.back().first_id + placements.back().count;
+    }
 };
 
+// What becomes of a mesh with several instances. Ids, hence samples and hits, are the same in any case.
+enum class Sharing {
+    automatic,  // stored once where that saves enough, see sharing_least
+    never,      // written out, an instance each
+    always,     // stored once wherever an instance allows it
+};
+// What `automatic` asks for. A mesh: as many triangles, because rays pay for every instance that they look into. The scene:
+// as many bytes saved, and that part of what it takes written out, because kernels for instances are slower for all rays.
+inline constexpr uint32_t sharing_least_triangles = 64;
+inline constexpr uint64_t sharing_least_bytes = 16 << 20;
+inline constexpr double sharing_least_part = 0.25;
+// An instance is written out where it is singular or nearly, or smaller than its own distance from the origin divided by
+// this: rays in its mesh's own space would be too inexact there.
+inline constexpr double sharing_most_distortion = 8192;
+
 // Applies instance transforms, computes missing normals, drops triangles with a vertex that is not finite or beyond
-// `farthest` (counted in a warning that is appended to `scene.warnings`). Zero-area triangles stay: they are harmless downstream and keep indices stable.
-Triangles flatten(Scene& scene);
+// `farthest` (counted in a warning that is appended to `scene.warnings`). Zero-area triangles stay: they are harmless
+// downstream and keep indices stable.
+// Where a mesh is shared, its vertices stay in its own space, and Triangles::placements say where it stands.
+Triangles flatten(Scene& scene, Sharing sharing = Sharing::automatic);
 
 // A camera that sees the whole scene, for scenes without one.
 Camera framing_camera(const Triangles& triangles);

@@ -28,7 +28,7 @@ Loaded load(const RenderOptions& options, Progress& progress) {
     Loaded loaded;
     loaded.scene = scenes::load(options.scene);
     scenes::apply_sky(loaded.scene, options.sky);
-    loaded.triangles = scenes::flatten(loaded.scene);
+    loaded.triangles = scenes::flatten(loaded.scene, options.instances);
     loaded.camera = scenes::pick_camera(loaded.scene, loaded.triangles, options.camera);
     progress.clear();
     for (const std::string& warning : loaded.scene.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());

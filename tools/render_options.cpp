@@ -88,6 +88,12 @@ const Choices<scenes::SkyChoice>& sky_choices() {
     return choices;
 }
 
+const Choices<scenes::Sharing>& sharings() {
+    using scenes::Sharing;
+    static const Choices<Sharing> choices = {{"auto", Sharing::automatic}, {"shared", Sharing::always}, {"flat", Sharing::never}};
+    return choices;
+}
+
 const std::vector<std::string>& layer_names() {
     static const std::vector<std::string> names = {"direct", "indirect", "emission", "albedo", "N", "P", "Z"};
     return names;
@@ -105,6 +111,8 @@ std::shared_ptr<RenderOptions> add_render_options(CLI::App& command) {
     add_choice(command, "--sky", o.sky, sky_choices(),
                "light from above, of radiance 1, by " + std::to_string(scenes::default_sky_lights) +
                    " directional lights;\nauto: for a scene that has no light and no emission");
+    add_choice(command, "--instances", o.instances, sharings(),
+               "meshes with several instances: stored once where that saves 16 MiB and a quarter of\nthe scene, wherever it can be, or written out; memory and time differ, the image does not");
     add_technique(command, o.frame);
     add_parsed(command, "--memory-limit", "MiB", "", "for all buffers on the device; unless given, what it has", [&o](const std::string& text) {
         o.device.memory_limit = parse_whole("--memory-limit", text, 1, uint64_t(1) << 30) << 20;

@@ -20,6 +20,7 @@ struct RenderOptions {
     std::optional<float> exposure;       // absent: auto
     passes::FrameSettings frame;
     engine::DeviceOptions device;
+    scenes::Sharing instances = scenes::Sharing::automatic;
     uint32_t repeat = 1;
     bool full_floats = false, quiet = false;
 };
@@ -27,6 +28,7 @@ struct RenderOptions {
 const Choices<passes::Visibility>& visibilities();
 const Choices<compute::AppendMode>& append_modes();
 const Choices<scenes::SkyChoice>& sky_choices();
+const Choices<scenes::Sharing>& sharings();
 const std::vector<std::string>& layer_names();
 
 // Declares the options on `command`; they hold their values once it was parsed and check_outputs has returned.

@@ -23,6 +23,7 @@ double rounded(double ms) { return std::round(ms * 1e4) / 1e4; }  // finer is no
 ordered_json scene_json(const RunRecord& run) {
     ordered_json scene = {{"name", run.scene}, {"camera", run.camera}, {"triangles", run.size.triangles}, {"lights", run.size.lights},
                           {"bvh_nodes", run.size.bvh_nodes}};
+    if (run.size.instances) scene["instances"] = run.size.instances, scene["stored_triangles"] = run.size.stored_triangles;
     if (run.size.samples) scene["samples"] = run.size.samples, scene["bsh_blocks"] = run.size.bsh_blocks;
     return scene;
 }
@@ -140,6 +141,10 @@ std::string stats_json(const RunRecord& run) {
 std::string stats_table(const RunRecord& run) {
     std::string text = format("%s, camera %s, %llu triangles, on %s\n", run.scene.c_str(), run.camera.c_str(),
                               static_cast<unsigned long long>(run.size.triangles), run.device.name.c_str());
+    if (run.size.instances)
+        text.insert(text.find(" triangles") + 10, format(" (%llu stored; %llu instances share them)",
+                                                         static_cast<unsigned long long>(run.size.stored_triangles),
+                                                         static_cast<unsigned long long>(run.size.instances)));
     const bool many = run.frames.size() > 1;
     text += format("%-12s %10s %10s%s\n", "pass", "gpu ms", "cpu ms",
                    many ? format("   (medians of %zu frames)", run.frames.size()).c_str() : "");

@@ -20,15 +20,15 @@ std::vector<BshLevel> bsh_levels(uint leaves) {
     return levels;
 }
 
-Bsh::Bsh(engine::Device& device, std::span<const glm::vec3> positions, std::span<const glm::uvec4> triangles, uint32_t log2_samples,
-         uint32_t seed)
-    : leaves_(device, compute_kernels, "bsh/leaves"), inner_(device, compute_kernels, "bsh/inner"), depth_(log2_samples) {
+Bsh::Bsh(engine::Device& device, const WorldTriangles& world, uint32_t log2_samples, uint32_t seed)
+    : leaves_(device, compute_kernels, "bsh/leaves", world.constants()), inner_(device, compute_kernels, "bsh/inner"), depth_(log2_samples),
+      shared_(world.shared()) {
     assert(log2_samples <= 28 && "slots are 32-bit");
     using Clock = std::chrono::steady_clock;
     auto ms_since = [](Clock::time_point start) { return std::chrono::duration<double, std::milli>(Clock::now() - start).count(); };
 
     const auto begin = Clock::now();
-    const SurfaceSampling sampling = sample_surface(positions, triangles, log2_samples, seed);
+    const SurfaceSampling sampling = sample_surface(world, log2_samples, seed);
     sampling_ms_ = ms_since(begin);
     if (sampling.empty()) return;
     sample_radius_ = sampling.radius;
@@ -38,8 +38,8 @@ Bsh::Bsh(engine::Device& device, std::span<const glm::vec3> positions, std::span
     std::vector<glm::vec3> points(sampling.samples.size());
     for (size_t i = 0; i < points.size(); ++i) {
         const SurfaceSample& s = sampling.samples[i];
-        const glm::uvec4 t = triangles[s.triangle];
-        points[i] = bsh_position(positions[t.x], positions[t.y], positions[t.z], s.u, s.v);
+        const Corners c = world.corners(s.triangle);
+        points[i] = bsh_position(c.p0, c.p1, c.p2, s.u, s.v);
     }
     std::vector<SurfaceSample> leaves(points.size());
     const std::vector<uint32_t> order = bsh_order(points);
@@ -56,7 +56,9 @@ Bsh::Bsh(engine::Device& device, std::span<const glm::vec3> positions, std::span
     merged_boxes_ = {device, "scene", "BSH merged boxes", 2 * uint64_t(blocks())};
 }
 
-void Bsh::refit(engine::Recorder& recorder, const engine::Array<vec3>& positions, const engine::Array<uvec4>& triangles) {
+void Bsh::refit(engine::Recorder& recorder, const engine::Array<vec3>& positions, const engine::Array<uvec4>& triangles,
+                const engine::Array<Instance>* instances) {
+    assert(!shared_ || instances);
     for (size_t i = 0; i < levels_.size(); ++i) {
         const BshLevel& level = levels_[i];
         recorder.dispatch(i == 0 ? leaves_ : inner_,
@@ -69,12 +71,14 @@ void Bsh::refit(engine::Recorder& recorder, const engine::Array<vec3>& positions
                                        .samples = recorder.read(samples_),
                                        .triangles = recorder.read(triangles),
                                        .positions = recorder.read(positions),
+                                       .instances = shared_ ? recorder.read(*instances) : Instances{},
                                        .leaf_radius = sample_radius_,
                                        .leaf_share = sample_share(),
                                        .nodes = level.nodes,
                                        .first_slot = level.first_slot,
                                        .first_child_block = i == 0 ? 0 : levels_[i - 1].first_block(),
-                                       .first_owner = i + 1 < levels_.size() ? levels_[i + 1].first_slot : 0},
+                                       .first_owner = i + 1 < levels_.size() ? levels_[i + 1].first_slot : 0,
+                                       .instance_count = shared_ ? uint(instances->count()) : 0},
                           level.blocks());
     }
 }

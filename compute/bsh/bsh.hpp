@@ -6,6 +6,7 @@
 
 #include "compute/bsh/bsh_build.h"
 #include "compute/bsh/bsh_io.h"
+#include "compute/instances/world.hpp"
 #include "engine/recorder.hpp"
 
 namespace myriad::compute {
@@ -22,11 +23,12 @@ class Bsh {
 public:
     // Samples the surface at 2^log2_samples points and finds the topology, on the host. Bounds come with refit.
     // A scene without triangles gives an empty() hierarchy, which has no leaves and must not be read.
-    Bsh(engine::Device& device, std::span<const glm::vec3> positions, std::span<const glm::uvec4> triangles, uint32_t log2_samples,
-        uint32_t seed);
+    Bsh(engine::Device& device, const WorldTriangles& world, uint32_t log2_samples, uint32_t seed);
 
-    // Computes all bounds for these positions: a dispatch a level, nothing read back. `triangles` are those sampled.
-    void refit(engine::Recorder& recorder, const engine::Array<vec3>& positions, const engine::Array<uvec4>& triangles);
+    // Computes all bounds for these positions: a dispatch a level, nothing read back. Triangles and instances are those sampled;
+    // `instances` may be null where triangles are not shared.
+    void refit(engine::Recorder& recorder, const engine::Array<vec3>& positions, const engine::Array<uvec4>& triangles,
+               const engine::Array<Instance>* instances = nullptr);
 
     // For a kernel that walks the tree.
     BshRef read(engine::Recorder& recorder) const;
@@ -53,6 +55,7 @@ public:
 private:
     engine::Program leaves_, inner_;
     uint depth_;
+    bool shared_;
     std::vector<BshLevel> levels_;
     float sample_radius_ = 0;
     double area_ = 0, sampling_ms_ = 0, ordering_ms_ = 0;

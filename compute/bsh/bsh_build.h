@@ -6,6 +6,7 @@
 #define MYRIAD_COMPUTE_BSH_BUILD_H
 
 #include "compute/bsh/bsh_io.h"
+#include "compute/instances/instances.h"
 
 MYRIAD_BEGIN
 MYRIAD_ARRAY(BshPositions, vec3, 4)
@@ -28,14 +29,16 @@ struct BshLevelPush {
     Float4s merged;            // by block: the sphere of the node that owns it, before it is encoded
     Uint2s boxes;              // by slot
     Float4s merged_boxes;      // by block, two each: low and high corner of the node that owns it
-    SurfaceSamples samples;    // leaves only, with the two below
+    SurfaceSamples samples;    // leaves only, with the three below
     Uint4s triangles;
     BshPositions positions;
+    Instances instances;       // where triangles are shared
     float leaf_radius;         // of the sphere around a sample
     float leaf_share;          // area of the surface over the number of samples
     uint nodes, first_slot;
     uint first_child_block;    // inner only: the block that the level's first node owns
     uint first_owner;          // slot of the node that owns the level's first block; 0: nobody owns it, it holds the root
+    uint instance_count;       // leaves only
 };
 
 // At least |s.center - c| + s.radius; the radius itself where the centres coincide.

@@ -80,7 +80,7 @@ protected:
         std::vector<SurfaceSample> samples;
     };
     Built build(const Mesh& mesh, uint32_t depth, uint32_t seed = 1) {
-        Built built{Bsh(device, mesh.positions, mesh.triangles, depth, seed), {}, {}};
+        Built built{Bsh(device, {mesh.positions, mesh.triangles}, depth, seed), {}, {}};
         refit(built, mesh);
         built.samples = engine::download(device, built.bsh.samples());
         return built;
@@ -128,7 +128,7 @@ TEST_F(BshTest, follows_deformation) {
 }
 
 TEST_F(BshTest, empty_scene) {
-    Bsh bsh(device, {}, {}, 10, 1);
+    Bsh bsh(device, {}, 10, 1);
     EXPECT_TRUE(bsh.empty());
     EXPECT_EQ(bsh.leaves() + bsh.blocks() + bsh.slots() + bsh.levels() + bsh.bytes(), 0u);
     auto positions = on_device(std::vector<vec3>{});
@@ -143,7 +143,7 @@ TEST_F(BshTest, sizes) {
     const struct { uint32_t depth; uint blocks, levels; } expected[] = {{0, 1, 1}, {1, 1, 1}, {3, 1, 1}, {4, 3, 2},
                                                                         {6, 9, 2}, {7, 19, 3}, {9, 73, 3}};
     for (const auto& e : expected) {
-        const Bsh bsh(device, mesh.positions, mesh.triangles, e.depth, 1);
+        const Bsh bsh(device, {mesh.positions, mesh.triangles}, e.depth, 1);
         EXPECT_EQ(bsh.blocks(), e.blocks) << e.depth;
         EXPECT_EQ(bsh.levels(), e.levels) << e.depth;
         EXPECT_EQ(bsh.root(), 8 * e.blocks) << e.depth;
@@ -187,7 +187,7 @@ TEST_F(BshTest, validator_reports_damage) {
     EXPECT_NE(fault_after([](BshArrays& t) { t.spheres[t.root() + 1] = t.spheres[t.root()]; }), "") << "a second root";
     EXPECT_NE(fault_after([](BshArrays& t) { t.blocks -= 1; }), "");
     EXPECT_NE(fault_after([](BshArrays& t) { t.leaves /= 2; }), "");
-    Built swapped{Bsh(device, {}, {}, 0, 1), {}, built.samples};
+    Built swapped{Bsh(device, {}, 0, 1), {}, built.samples};
     std::swap(swapped.samples.front(), swapped.samples.back());
     EXPECT_NE(bsh_check(built.tree, {swapped.samples, mesh.positions, mesh.triangles, built.bsh.sample_radius(), built.bsh.sample_share()}), "") << "leaves in another order";
 }

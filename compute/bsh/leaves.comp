@@ -2,6 +2,19 @@
 #extension GL_GOOGLE_include_directive : require
 // The lowest level: leaves are discs around samples, bounded by spheres and by their triangles' normals.
 #include "compute/bsh/bsh_block.glsl"
+#include "compute/instances/instances.glsl"
+
+Corners corners_of(uint triangle) {
+    uint stored = triangle;
+    Instance instance;
+    if (instanced) {
+        instance = push.instances.at[find_instance(push.instances, push.instance_count, triangle)];
+        stored = instance.first_triangle + (triangle - instance.first_id);
+    }
+    const uvec4 t = push.triangles.at[stored];
+    const Corners corners = Corners(push.positions.at[t.x], push.positions.at[t.y], push.positions.at[t.z]);
+    return instanced ? instance_corners(instance, corners) : corners;
+}
 
 void main() {
     const uint block = thread_index();
@@ -12,10 +25,10 @@ void main() {
     for (uint i = 0u; i < 8u; ++i) {
         const uint leaf = child_of(block, i);
         const SurfaceSample s = push.samples.at[leaf];
-        const uvec4 t = push.triangles.at[s.triangle];
-        const vec3 a = push.positions.at[t.x];
-        const vec3 b = push.positions.at[t.y];
-        const vec3 c = push.positions.at[t.z];
+        const Corners at = corners_of(s.triangle);
+        const vec3 a = at.p0;
+        const vec3 b = at.p1;
+        const vec3 c = at.p2;
         spheres.at[i].center = bsh_position(a, b, c, s.u, s.v);
         spheres.at[i].radius = push.leaf_radius;
         cones.at[i] = bsh_cone_of(b - a, c - a);

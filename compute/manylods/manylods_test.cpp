@@ -40,7 +40,7 @@ protected:
         return views;
     }
     Bsh build(const Soup& soup, uint32_t log2_samples) {
-        Bsh tree(device, soup.positions, soup.triangles, log2_samples, 1);
+        Bsh tree(device, {soup.positions, soup.triangles}, log2_samples, 1);
         if (tree.empty()) return tree;
         const auto positions = on_device(std::vector<vec3>(soup.positions));
         const auto triangles = on_device(std::vector<uvec4>(soup.triangles));

@@ -10,9 +10,11 @@ namespace myriad::compute {
 
 class Bvh {
 public:
-    // `triangles`: three indices into positions, and a fourth word that is ignored. Throws OutOfMemory.
-    Bvh(engine::Device& device, std::span<const glm::vec3> positions, std::span<const glm::uvec4> triangles,
-        BvhQuality quality = BvhQuality::quick);
+    // Throws OutOfMemory.
+    Bvh(engine::Device& device, const WorldTriangles& world, BvhQuality quality = BvhQuality::quick);
+
+    // What kernels that include trace.glsl are specialised by, beside their own: programs are made for a tree.
+    engine::Constants constants(engine::Constants own = {}) const;
 
     // For the push constants of a kernel that includes trace.glsl. Counts as a read in the next dispatch.
     BvhRef read(engine::Recorder& recorder) const;
@@ -20,14 +22,16 @@ public:
     uint64_t nodes() const { return nodes_.count(); }
     uint64_t triangles() const { return triangle_count_; }  // in the leaves
     uint64_t dropped() const { return dropped_; }           // zero area, not finite, or a copy of another
-    uint64_t bytes() const { return nodes_.bytes() + triangles_.bytes(); }
+    uint64_t bytes() const { return nodes_.bytes() + triangles_.bytes() + instances_.bytes(); }
     uint depth() const { return depth_; }
     double build_ms() const { return build_ms_; }
 
 private:
     engine::Array<BvhNode> nodes_;
     engine::Array<BvhTriangle> triangles_;
+    engine::Array<Instance> instances_;
     uint64_t triangle_count_ = 0, dropped_ = 0;
+    bool shared_ = false;
     uint depth_ = 0, loop_budget_ = 0;
     double build_ms_ = 0;
 };

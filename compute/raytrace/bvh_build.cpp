@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <map>
 #include <memory>
 #include <numeric>
+#include <set>
 #include <string>
 #include <tuple>
 
@@ -84,17 +86,19 @@ void split(const RTCBuildPrimitive* primitive, unsigned axis, float position, RT
     }
 }
 
-// Triangles worth a test, in the order of their indices.
-std::vector<BvhTriangle> hittable(std::span<const glm::vec3> positions, std::span<const glm::uvec4> indices) {
-    std::vector<BvhTriangle> kept;
-    kept.reserve(indices.size());
+// Triangles worth a test, in the order of their indices, among stored ones [first, first + count), which get ids from first_id on.
+// Of a shared mesh, needles without area stay: rounding gives them one in the world, now and then.
+void append_hittable(const WorldTriangles& world, uint first, uint count, uint first_id, bool shared, std::vector<BvhTriangle>& kept) {
     auto finite = [](vec3 p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); };
-    for (uint i = 0; i < indices.size(); ++i) {
-        const vec3 p0 = positions[indices[i].x], p1 = positions[indices[i].y], p2 = positions[indices[i].z];
+    for (uint i = 0; i < count; ++i) {
+        const auto [p0, p1, p2] = world.stored(first + i);
         if (!finite(p0) || !finite(p1) || !finite(p2)) continue;
         const glm::dvec3 area = cross(glm::dvec3(p1) - glm::dvec3(p0), glm::dvec3(p2) - glm::dvec3(p0));
-        if (area != glm::dvec3(0)) kept.push_back({p0, p1, p2, i});
+        if (shared ? p0 != p1 && p1 != p2 && p2 != p0 : area != glm::dvec3(0)) kept.push_back({p0, p1, p2, first_id + i});
     }
+}
+
+void drop_copies(std::vector<BvhTriangle>& kept) {
     // Copies of a triangle can only tie with it; a heap of them in one place would be a tree that prunes nothing.
     using Key = std::array<float, 9>;
     auto key = [&](uint i) {
@@ -111,7 +115,6 @@ std::vector<BvhTriangle> hittable(std::span<const glm::vec3> positions, std::spa
     for (size_t i = 0; i < kept.size(); ++i)
         if (!copy[i]) kept[n++] = kept[i];
     kept.resize(n);
-    return kept;
 }
 
 // Rounds the boxes of a node's children to its frame, outward.
@@ -146,18 +149,19 @@ void quantise(const Built& from, BvhNode& to) {
 }
 
 struct Layout {
-    const std::vector<BvhTriangle>& triangles;
+    std::span<const BvhTriangle> triangles;  // what leaves hold …
+    std::span<const BvhNode> instances;      // … or, on top, the nodes that stand for them
     BvhData& out;
 
     // Children lie side by side; subtrees follow in depth-first order.
     void lay(Built& node, uint index, uint level) {
-        out.depth = std::max(out.depth, level);
+        deepest = std::max(deepest, level);
         // Inner nodes first, the larger ones first among them: occlusion rays take them in this order.
         std::array<uint, bvh_width> order;
         std::iota(order.begin(), order.end(), 0u);
         auto area = [&](uint i) { const vec3 e = node.box[i].hi - node.box[i].lo; return e.x * e.y + e.y * e.z + e.z * e.x; };
         std::stable_sort(order.begin(), order.begin() + node.count, [&](uint a, uint b) {
-            if (node.child[a]->leaf != node.child[b]->leaf) return node.child[b]->leaf;
+            if (instances.empty() && node.child[a]->leaf != node.child[b]->leaf) return node.child[b]->leaf;
             return area(a) > area(b);
         });
         Built sorted = node;
@@ -170,37 +174,30 @@ struct Layout {
         uint inner = 0;
         for (uint i = 0; i < sorted.count; ++i) {
             const Built& child = *sorted.child[i];
-            if (!child.leaf) { ++inner; continue; }
+            if (!child.leaf || !instances.empty()) { ++inner; continue; }
             packed.child[i].x |= child.count << 24;
             packed.child[i].y |= (uint(out.triangles.size()) - packed.first_triangle) << 24;
             for (uint k = 0; k < child.count; ++k) out.triangles.push_back(triangles[child.triangle[k]]);
         }
         out.nodes[index] = packed;
         out.nodes.resize(out.nodes.size() + inner);
-        for (uint i = 0; i < inner; ++i) lay(*sorted.child[i], packed.first_child + i, level + 1);
+        for (uint i = 0; i < inner; ++i) {
+            Built& child = *sorted.child[i];
+            if (child.leaf) out.nodes[packed.first_child + i] = instances[child.triangle[0]];
+            else lay(child, packed.first_child + i, level + 1);
+        }
     }
+
+    uint deepest = 0;
 };
 
-}  // namespace
+BvhBox united(const BvhBox& a, const BvhBox& b) { return {min(a.lo, b.lo), max(a.hi, b.hi)}; }
 
-BvhBox bvh_box(const BvhTriangle& t) {
-    const vec3 lo = min(t.p0, min(t.p1, t.p2)), hi = max(t.p0, max(t.p1, t.p2)), pad = padding(t);
-    return {lo - pad, hi + pad};
-}
-
-BvhData build_bvh(std::span<const glm::vec3> positions, std::span<const glm::uvec4> indices, BvhQuality quality) {
-    const std::vector<BvhTriangle> triangles = hittable(positions, indices);
-    BvhData out;
-    out.dropped = uint(indices.size() - triangles.size());
-    out.nodes.push_back({});
-    out.depth = 1;
-    if (triangles.empty()) return out;
-
-    std::vector<RTCBuildPrimitive> primitives(triangles.size());
-    for (uint i = 0; i < triangles.size(); ++i) {
-        const BvhBox box = bvh_box(triangles[i]);
-        primitives[i] = {box.lo.x, box.lo.y, box.lo.z, 0, box.hi.x, box.hi.y, box.hi.z, i};
-    }
+// Lays the tree that Embree makes of these boxes from node `index` on. Returns its levels.
+uint lay_tree(Layout layout, std::span<const BvhBox> boxes, uint index, BvhQuality quality, uint max_depth) {
+    std::vector<RTCBuildPrimitive> primitives(boxes.size());
+    for (uint i = 0; i < boxes.size(); ++i)
+        primitives[i] = {boxes[i].lo.x, boxes[i].lo.y, boxes[i].lo.z, 0, boxes[i].hi.x, boxes[i].hi.y, boxes[i].hi.z, i};
     const std::unique_ptr<RTCDeviceTy, void (*)(RTCDevice)> device(rtcNewDevice(nullptr), rtcReleaseDevice);
     const std::unique_ptr<RTCBVHTy, void (*)(RTCBVH)> bvh(rtcNewBVH(device.get()), rtcReleaseBVH);
     RTCBuildArguments arguments = rtcDefaultBuildArguments();
@@ -209,36 +206,154 @@ BvhData build_bvh(std::span<const glm::vec3> positions, std::span<const glm::uve
     if (best) primitives.resize(2 * count);  // room for the halves of split triangles
     arguments.buildQuality = best ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM;
     arguments.maxBranchingFactor = bvh_width;
-    arguments.maxDepth = bvh_max_depth;
-    arguments.maxLeafSize = bvh_leaf_size;
+    arguments.maxDepth = max_depth;
+    arguments.maxLeafSize = layout.instances.empty() ? bvh_leaf_size : 1;
     arguments.traversalCost = 2;  // as measured: a node takes the time of two to three triangles
     arguments.bvh = bvh.get();
     arguments.primitives = primitives.data();
     arguments.primitiveCount = count;
     arguments.primitiveArrayCapacity = primitives.size();
     arguments.splitPrimitive = split;
-    arguments.userPtr = const_cast<BvhTriangle*>(triangles.data());
+    arguments.userPtr = const_cast<BvhTriangle*>(layout.triangles.data());
     arguments.createNode = make_node;
     arguments.setNodeChildren = set_children;
     arguments.setNodeBounds = set_boxes;
     arguments.createLeaf = make_leaf;
     auto* root = static_cast<Built*>(rtcBuildBVH(&arguments));
-    if (!root) throw DeviceError("Embree could not build a tree over " + std::to_string(triangles.size()) + " triangles: error " +
+    if (!root) throw DeviceError("Embree could not build a tree over " + std::to_string(count) + " boxes: error " +
                                  std::to_string(rtcGetDeviceError(device.get())));
     Built above;  // a root that is a leaf gets a node of one child
     if (root->leaf) {
         above.count = 1;
         above.child[0] = root;
-        above.box[0] = bvh_box(triangles[root->triangle[0]]);
-        for (uint i = 1; i < root->count; ++i) {
-            const BvhBox box = bvh_box(triangles[root->triangle[i]]);
-            above.box[0] = {min(above.box[0].lo, box.lo), max(above.box[0].hi, box.hi)};
-        }
+        above.box[0] = boxes[root->triangle[0]];
+        for (uint i = 1; i < root->count; ++i) above.box[0] = united(above.box[0], boxes[root->triangle[i]]);
         root = &above;
     }
+    layout.lay(*root, index, 1);
+    assert(layout.deepest <= max_depth);
+    return layout.deepest;
+}
+
+// Appends a tree over triangles. Returns its levels; nodes[index] is its root, which is there already.
+uint append_tree(std::span<const BvhTriangle> triangles, uint index, BvhQuality quality, uint max_depth, BvhData& out) {
+    if (triangles.empty()) return 1;
+    std::vector<BvhBox> boxes(triangles.size());
+    for (size_t i = 0; i < boxes.size(); ++i) boxes[i] = bvh_box(triangles[i]);
+    return lay_tree({triangles, {}, out}, boxes, index, quality, max_depth);
+}
+
+// A mesh's tree, and what its instances' nodes and boxes are made from.
+struct MeshTree {
+    uint root = 0, depth = 0;
+    size_t first = 0, count = 0;  // its triangles in BvhData
+    vec3 most{0};                 // the largest magnitude of a coordinate, by axis
+};
+
+MeshTree append_mesh(std::span<const BvhTriangle> triangles, BvhQuality quality, BvhData& out) {
+    MeshTree mesh{.root = uint(out.nodes.size()), .first = out.triangles.size()};
+    out.nodes.push_back({});
+    mesh.depth = append_tree(triangles, mesh.root, quality, bvh_max_mesh_depth, out);
+    mesh.count = out.triangles.size() - mesh.first;
+    for (const BvhTriangle& t : triangles) mesh.most = max(mesh.most, max(abs(t.p0), max(abs(t.p1), abs(t.p2))));
+    return mesh;
+}
+
+// The node that stands for an instance (bvh_is_instance in raytrace_io.h).
+BvhNode instance_node(const MeshTree& mesh, const Instance& i, uint index) {
+    BvhNode node{};
+    node.frame = bvh_is_instance << 24;
+    node.first_child = mesh.root;
+    node.first_triangle = index;
+    if ((i.flags & instance_in_world) != 0) return node;
+    using glm::dvec3;
+    const dvec3 far = abs(dvec3(i.x)) * double(mesh.most.x) + abs(dvec3(i.y)) * double(mesh.most.y) + abs(dvec3(i.z)) * double(mesh.most.z) + abs(dvec3(i.at));
+    node.origin = vec3(far * (1 + 1e-6));
+    const glm::dmat3 inverse = glm::inverse(glm::dmat3(i.x, i.y, i.z));
+    const vec3 columns[4] = {vec3(inverse[0]), vec3(inverse[1]), vec3(inverse[2]), i.at};
+    for (uint w = 0; w < 12; ++w) node.child[w / 2][int(w % 2)] = floatBitsToUint(columns[w / 3][int(w % 3)]);
+    return node;
+}
+
+// Around all the mesh's triangles in the world, enlarged as a triangle's box is.
+BvhBox instance_box(std::span<const BvhTriangle> triangles, const Instance& i) {
+    BvhBox box{vec3(INFINITY), vec3(-INFINITY)};
+    for (const BvhTriangle& t : triangles) {
+        const Corners c = instance_corners(i, {t.p0, t.p1, t.p2});
+        box = united(box, {min(c.p0, min(c.p1, c.p2)), max(c.p0, max(c.p1, c.p2))});
+    }
+    const vec3 extent = box.hi - box.lo;
+    const vec3 pad = (vec3(max(extent.x, max(extent.y, extent.z))) + max(abs(box.lo), abs(box.hi))) * 4.7683716e-7f;
+    return {box.lo - pad, box.hi + pad};
+}
+
+// Trees of meshes, and one over instances. Everything that is stored in world space is one mesh.
+BvhData build_levels(const WorldTriangles& world, BvhQuality quality) {
+    BvhData out;
+    out.nodes.push_back({});
+    std::map<uint, MeshTree> meshes;  // by their first stored triangle
+    std::vector<BvhTriangle> triangles, in_world;
+    uint mesh_depth = 0;
+    std::vector<MeshTree> tree_of;    // of out.instances
+    // Where a mesh stands twice in the very same place, the second can only tie with the first.
+    std::set<std::pair<uint, std::array<float, 12>>> places;
+    const auto use = [&](const MeshTree& mesh, const Instance& instance) {
+        mesh_depth = std::max(mesh_depth, mesh.depth);
+        if (mesh.count > 0) out.instances.push_back(instance), tree_of.push_back(mesh);
+    };
+    for (const Instance& i : world.instances) {
+        if ((i.flags & instance_in_world) != 0) {
+            append_hittable(world, i.first_triangle, i.count, i.first_id, false, in_world);
+            out.dropped += i.count;
+            continue;
+        }
+        const std::array<float, 12> place{i.x.x, i.x.y, i.x.z, i.y.x, i.y.y, i.y.z, i.z.x, i.z.y, i.z.z, i.at.x, i.at.y, i.at.z};
+        if (!places.insert({i.first_triangle, place}).second) continue;
+        const auto [mesh, is_new] = meshes.try_emplace(i.first_triangle);
+        if (is_new) {
+            triangles.clear();
+            append_hittable(world, i.first_triangle, i.count, 0, true, triangles);
+            drop_copies(triangles);
+            out.dropped += i.count - uint(triangles.size());
+            mesh->second = append_mesh(triangles, quality, out);
+        }
+        use(mesh->second, i);
+    }
+    drop_copies(in_world);
+    out.dropped -= uint(in_world.size());
+    Instance all{};
+    all.flags = instance_in_world;
+    use(append_mesh(in_world, quality, out), all);
+
+    std::vector<BvhNode> nodes(out.instances.size());
+    std::vector<BvhBox> boxes(nodes.size());
+    for (uint i = 0; i < nodes.size(); ++i) {
+        nodes[i] = instance_node(tree_of[i], out.instances[i], i);
+        boxes[i] = instance_box(std::span(out.triangles).subspan(tree_of[i].first, tree_of[i].count), out.instances[i]);
+    }
+    out.depth = 1;
+    if (!nodes.empty()) out.depth = lay_tree({{}, nodes, out}, boxes, 0, BvhQuality::quick, bvh_max_top_depth) + mesh_depth;
+    return out;
+}
+
+}  // namespace
+
+BvhBox bvh_box(const BvhTriangle& t) {
+    const vec3 lo = min(t.p0, min(t.p1, t.p2)), hi = max(t.p0, max(t.p1, t.p2)), pad = padding(t);
+    return {lo - pad, hi + pad};
+}
+
+BvhData build_bvh(const WorldTriangles& world, BvhQuality quality) {
+    if (world.shared()) return build_levels(world, quality);
+    BvhData out;
+    std::vector<BvhTriangle> triangles;
+    triangles.reserve(world.triangles.size());
+    append_hittable(world, 0, world.count(), 0, false, triangles);
+    drop_copies(triangles);
+    out.dropped = uint(world.triangles.size() - triangles.size());
+    out.nodes.push_back({});
     out.triangles.reserve(triangles.size());
-    Layout{triangles, out}.lay(*root, 0, 1);
-    assert(out.depth <= bvh_max_depth);
+    out.depth = append_tree(triangles, 0, quality, bvh_max_depth, out);
     return out;
 }
 

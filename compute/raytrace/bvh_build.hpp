@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "compute/instances/world.hpp"
 #include "compute/raytrace/raytrace_io.h"
 
 namespace myriad::compute {
@@ -17,13 +18,13 @@ enum class BvhQuality {
 struct BvhData {
     std::vector<BvhNode> nodes;           // nodes[0] is the root
     std::vector<BvhTriangle> triangles;   // in the order of leaves; spatial splits repeat some
-    uint depth = 0;                       // levels of nodes, at most bvh_max_depth
-    uint dropped = 0;                     // triangles that no ray can hit: zero area, not finite, or a copy of an earlier one
+    std::vector<Instance> instances;      // that nodes refer to: those that share, and one for all that is stored in world space
+    uint depth = 0;                       // levels of nodes on the longest way down, at most bvh_max_depth; with instances bvh_max_stack
+    uint dropped = 0;                     // stored triangles that no ray can hit: zero area, not finite, or a copy of an earlier one
 };
 
 // The same input gives the same bytes, whatever the number of threads.
-BvhData build_bvh(std::span<const glm::vec3> positions, std::span<const glm::uvec4> triangles,
-                  BvhQuality quality = BvhQuality::quick);
+BvhData build_bvh(const WorldTriangles& world, BvhQuality quality = BvhQuality::quick);
 
 // The bounds that a triangle is boxed by; see bvh_build.cpp for what they are enlarged by.
 struct BvhBox {

@@ -31,9 +31,15 @@ MYRIAD_FN vec3 axis_last(vec3 p, uint axis) {
     return axis == 2u ? p : axis == 1u ? vec3(p.z, p.x, p.y) : vec3(p.y, p.z, p.x);
 }
 
-// A component of 0 becomes 2^-64 of the largest one, so that no slab is 0 * inf: a box that reaches past the origin in that
+// The components of 1 / direction. One of 0 becomes 2^-64 of the largest one, so that no slab is 0 * inf: a box that reaches past the origin in that
 // axis by any float is then left at the far end of the world (bvh_box sees to the strictness). Directions need not be unit,
 // but longer than 2^-62.
+MYRIAD_FN vec3 ray_inverses(vec3 direction) {
+    const vec3 size = abs(direction);
+    const float tiny = greater(greater(size.x, greater(size.y, size.z)) * 5.421011e-20f, 1.1754944e-38f);  // 2^-64, 2^-126
+    return vec3(ray_inverse(direction.x, tiny), ray_inverse(direction.y, tiny), ray_inverse(direction.z, tiny));
+}
+
 MYRIAD_FN TraceRay trace_ray(vec3 origin, vec3 direction, float t_min, float t_max) {
     TraceRay ray;
     ray.origin = origin;
@@ -42,8 +48,7 @@ MYRIAD_FN TraceRay trace_ray(vec3 origin, vec3 direction, float t_min, float t_m
     ray.t_max = t_max;
     const vec3 size = abs(direction);
     const float largest = greater(size.x, greater(size.y, size.z));
-    const float tiny = greater(largest * 5.421011e-20f, 1.1754944e-38f);  // 2^-64, 2^-126
-    ray.inverse = vec3(ray_inverse(direction.x, tiny), ray_inverse(direction.y, tiny), ray_inverse(direction.z, tiny));
+    ray.inverse = ray_inverses(direction);
     ray.axis = size.z == largest ? 2u : size.y == largest ? 1u : 0u;
     const vec3 d = axis_last(direction, ray.axis);
     ray.shear = vec3(d.x / d.z, d.y / d.z, 1.0f / d.z);

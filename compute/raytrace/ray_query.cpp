@@ -6,8 +6,9 @@ namespace myriad::compute {
 
 using engine::compute_kernels;
 
-RayQuery::RayQuery(engine::Device& device)
-    : closest_(device, compute_kernels, "raytrace/closest"), occluded_(device, compute_kernels, "raytrace/occluded") {}
+RayQuery::RayQuery(engine::Device& device, const Bvh& bvh)
+    : closest_(device, compute_kernels, "raytrace/closest", bvh.constants()),
+      occluded_(device, compute_kernels, "raytrace/occluded", bvh.constants()) {}
 
 void RayQuery::closest(engine::Recorder& recorder, const Bvh& bvh, const engine::Array<Ray>& rays, const engine::Array<RayHitRecord>& hits,
                        const engine::Array<uint>& status) {

@@ -2,13 +2,15 @@
 #ifndef MYRIAD_COMPUTE_RAYTRACE_IO_H
 #define MYRIAD_COMPUTE_RAYTRACE_IO_H
 
-#include "engine/shared.h"
+#include "compute/instances/instances.h"
 
 MYRIAD_BEGIN
 const uint bvh_width = 8u;
 // Levels of nodes in the deepest tree. Traversal keeps one stack entry a level; the packet's stack is three registers of
 // eight lanes, hence 24. Embree's builder stops splitting by cost eight levels above the bound and halves from there.
 const uint bvh_max_depth = 24u;
+// With instances: levels over them, and levels in a mesh's tree. The stack is then 32 high, four registers.
+const uint bvh_max_top_depth = 14u, bvh_max_mesh_depth = 18u, bvh_max_stack = 32u;
 // Most triangles in a leaf: a node's leaves then hold at most 32, which one word of bits tells apart.
 const uint bvh_leaf_size = 4u;
 
@@ -27,10 +29,26 @@ struct BvhNode {
     uvec2 child[8];
 };
 
+// An instance is a node too, which stands where its mesh's tree would: `frame` has bvh_is_instance for a number of children,
+// first_child is the root of the tree, first_triangle an element of BvhRef::instances. `child` holds twelve floats: the
+// columns of world to object, and the instance's own origin `at`, which is subtracted first; `origin` holds, axis by axis,
+// the largest magnitude that a coordinate of the mesh, or a term of its transform, has in the world.
+const uint bvh_is_instance = 255u;
+
+// Boxes are met by the ray in the mesh's own space, triangles by the ray itself in the world. The pad that boxes get in a
+// mesh's space, for a ray that starts at `from` (relative to the instance's origin): with u = 2^-24 and in units of world
+// coordinates, what is off is the ray's origin by 5 u, its direction by 4 u of the way to the mesh, and the mesh's vertices
+// by 4 u, which the triangle test rounds by 3 u more: 12 u of |from| and 11 u of `far` at most, of which axis_j of world to
+// object makes object coordinates. It gets 20 u.
+MYRIAD_FN vec3 instance_pad(vec3 axis_x, vec3 axis_y, vec3 axis_z, vec3 from, vec3 far) {
+    const vec3 reach = abs(from) + far;
+    return (abs(axis_x) * reach.x + abs(axis_y) * reach.y + abs(axis_z) * reach.z) * 1.1920929e-6f;
+}
+
 // Positions gathered so that a test reads 9 words in a row; the tenth is read for the hit that is kept.
 struct BvhTriangle {
     vec3 p0, p1, p2;
-    uint id;
+    uint id;              // in the world; of a shared mesh: counted from its first
 };
 MYRIAD_ARRAY(BvhNodes, BvhNode, 8)
 MYRIAD_ARRAY(BvhTriangles, BvhTriangle, 4)
@@ -39,6 +57,7 @@ MYRIAD_ARRAY(BvhTriangles, BvhTriangle, 4)
 struct BvhRef {
     BvhNodes nodes;
     BvhTriangles triangles;
+    Instances instances;  // the tree's own; first_id is what to add to the ids of its triangles
     uint loop_budget;     // see trace_exhausted in trace.glsl
     uint padding;         // C++ would add it anyway
 };
@@ -93,7 +112,7 @@ struct RayQueryPush {
 MYRIAD_END
 
 #ifdef __cplusplus
-static_assert(sizeof(myriad::BvhNode) == 88 && sizeof(myriad::BvhTriangle) == 40 && sizeof(myriad::BvhRef) == 24);
+static_assert(sizeof(myriad::BvhNode) == 88 && sizeof(myriad::BvhTriangle) == 40 && sizeof(myriad::BvhRef) == 32);
 static_assert(sizeof(myriad::Ray) == 32 && sizeof(myriad::RayHitRecord) == 20);
 #endif
 

@@ -14,6 +14,7 @@ struct Mesh {
     std::vector<vec3> positions;
     std::vector<uvec4> triangles;
 
+    WorldTriangles world() const { return {positions, triangles}; }
     void triangle(vec3 a, vec3 b, vec3 c) {
         const uint n = uint(positions.size());
         positions.insert(positions.end(), {a, b, c});
@@ -71,7 +72,7 @@ protected:
     }
 
     std::vector<RayHitRecord> closest(engine::Device& on, const Bvh& bvh, const std::vector<Ray>& rays) {
-        RayQuery query(on);
+        RayQuery query(on, bvh);
         auto list = engine::upload(on, "test", "rays", rays);
         auto status = engine::upload(on, "test", "status", std::vector<uint>{0});
         engine::Array<RayHitRecord> hits(on, "test", "hits", rays.size());
@@ -82,7 +83,7 @@ protected:
         return engine::download(on, hits);
     }
     std::vector<uint> occluded(engine::Device& on, const Bvh& bvh, const std::vector<Ray>& rays) {
-        RayQuery query(on);
+        RayQuery query(on, bvh);
         auto list = engine::upload(on, "test", "rays", rays);
         auto status = engine::upload(on, "test", "status", std::vector<uint>{0});
         engine::Array<uint> result(on, "test", "occluded", rays.size());
@@ -92,13 +93,13 @@ protected:
         EXPECT_EQ(engine::download(on, status)[0], 0u);
         return engine::download(on, result);
     }
-    std::vector<RayHitRecord> closest(const Mesh& m, const std::vector<Ray>& rays) { return closest(device, Bvh(device, m.positions, m.triangles), rays); }
-    std::vector<uint> occluded(const Mesh& m, const std::vector<Ray>& rays) { return occluded(device, Bvh(device, m.positions, m.triangles), rays); }
+    std::vector<RayHitRecord> closest(const Mesh& m, const std::vector<Ray>& rays) { return closest(device, Bvh(device, m.world()), rays); }
+    std::vector<uint> occluded(const Mesh& m, const std::vector<Ray>& rays) { return occluded(device, Bvh(device, m.world()), rays); }
 
     // Device against the float twin, to the bit, closest and occluded.
     void agree(engine::Device& on, const Mesh& m, const std::vector<Ray>& rays, BvhQuality quality = BvhQuality::quick) {
-        const BvhData all = build_bvh(m.positions, m.triangles);
-        const Bvh bvh(on, m.positions, m.triangles, quality);
+        const BvhData all = build_bvh(m.world());
+        const Bvh bvh(on, m.world(), quality);
         const auto hits = closest(on, bvh, rays);
         const auto blocked = occluded(on, bvh, rays);
         uint wrong = 0;
@@ -154,7 +155,7 @@ TEST_F(RaytraceTest, one_triangle_by_hand) {
 
 TEST_F(RaytraceTest, twin_agrees_with_doubles) {
     const Mesh m = soup(300, 0.3f);
-    const BvhData all = build_bvh(m.positions, m.triangles);
+    const BvhData all = build_bvh(m.world());
     uint hits = 0;
     for (const Ray& ray : random_rays(3000)) {
         const ExactHit exact = closest_exact(m.positions, m.triangles, ray);
@@ -252,7 +253,7 @@ TEST_F(RaytraceTest, zero_area_and_broken_triangles_are_dropped) {
     m.triangle({0, 0, 0}, {0, 0, 0}, {1, 0, 0});
     m.triangle({0, 0, 0}, {0, NAN, 0}, {1, 0, 0});
     m.triangle({0, 0, 0}, {0, INFINITY, 0}, {1, 0, 0});
-    const Bvh empty(device, m.positions, m.triangles);
+    const Bvh empty(device, m.world());
     EXPECT_EQ(empty.triangles(), 0u); EXPECT_EQ(empty.dropped(), 4u);
     agree(m, random_rays(100));
     for (uint i = 0; i < 500; ++i) {  // needles down to denormals
@@ -265,13 +266,13 @@ TEST_F(RaytraceTest, zero_area_and_broken_triangles_are_dropped) {
 TEST_F(RaytraceTest, a_million_coincident_triangles) {
     Mesh m = one;
     m.triangles.resize(1000000, m.triangles[0]);
-    const Bvh bvh(device, m.positions, m.triangles);
+    const Bvh bvh(device, m.world());
     EXPECT_EQ(bvh.triangles(), 1u);
     EXPECT_EQ(closest(device, bvh, {{{0.2f, 0.2f, 1}, 0, {0, 0, -1}, 9}})[0].triangle, 0u);
     // Almost coincident ones cannot be dropped: the tree must stay within the stack, and find the top of the heap.
     Mesh heap;
     for (uint i = 0; i < 100000; ++i) heap.triangle({0, 0, i * 1e-9f}, {1, 0, i * 1e-9f}, {0, 1, i * 1e-9f});
-    const Bvh tall(device, heap.positions, heap.triangles);
+    const Bvh tall(device, heap.world());
     EXPECT_LE(tall.depth(), bvh_max_depth);
     EXPECT_NEAR(closest(device, tall, {{{0.2f, 0.2f, 1}, 0, {0, 0, -1}, 9}})[0].t, 1 - 1e-4f, 1e-6f);
 }
@@ -289,7 +290,7 @@ TEST_F(RaytraceTest, deep_trees_fit_the_stack) {
         rays.push_back(i % 2 ? Ray{vec3(2e6f), 0, to - vec3(2e6f), INFINITY} : Ray{to, 0, vec3(1) + 0.5f * in_cube(), INFINITY});
     }
     for (auto quality : {BvhQuality::quick, BvhQuality::best}) {
-        const uint depth = build_bvh(m.positions, m.triangles, quality).depth;
+        const uint depth = build_bvh(m.world(), quality).depth;
         EXPECT_GT(depth, 16u) << "all three registers of the packet's stack are to be used";
         EXPECT_LE(depth, bvh_max_depth);
         agree(device, m, rays, quality);
@@ -319,15 +320,15 @@ TEST_F(RaytraceTest, boxes_contain_their_triangles_and_builds_repeat) {
     for (float place : {0.0f, 1e6f}) {
         Mesh m = soup(30000, 0.02f);
         for (vec3& p : m.positions) p += vec3(place, 0, -place);
-        const BvhData data = build_bvh(m.positions, m.triangles);
+        const BvhData data = build_bvh(m.world());
         std::vector<uint> seen(m.triangles.size());
         contains(data, 0, 1, seen);
         EXPECT_EQ(std::count(seen.begin(), seen.end(), 1u), long(data.triangles.size()));
         EXPECT_EQ(data.triangles.size() + data.dropped, m.triangles.size());
         for (auto quality : {BvhQuality::quick, BvhQuality::best}) {
-            const BvhData first = build_bvh(m.positions, m.triangles, quality);
+            const BvhData first = build_bvh(m.world(), quality);
             for (int k = 0; k < 3; ++k) {
-                const BvhData again = build_bvh(m.positions, m.triangles, quality);
+                const BvhData again = build_bvh(m.world(), quality);
                 ASSERT_EQ(first.nodes.size(), again.nodes.size());
                 ASSERT_EQ(first.triangles.size(), again.triangles.size());
                 EXPECT_EQ(0, std::memcmp(first.nodes.data(), again.nodes.data(), first.nodes.size() * sizeof(BvhNode)));
@@ -364,7 +365,7 @@ TEST_F(RaytraceTest, rays_leave_their_own_surface) {
 
 TEST_F(RaytraceTest, running_out_of_the_loop_budget_is_reported) {
     const Mesh m = soup(2000, 0.3f);
-    const Bvh bvh(device, m.positions, m.triangles);
+    const Bvh bvh(device, m.world());
     auto rays = on_device(random_rays(64));
     auto status = on_device(std::vector<uint>{0});
     engine::Array<RayHitRecord> hits(device, "test", "hits", 64);
@@ -403,7 +404,7 @@ TEST_F(RaytraceTest, agrees_with_embree) {
     std::vector<Ray> rays;
     for (int i = 0; i < 100000; ++i) rays.push_back({vec3(15, 2, 15) + in_cube(15), 0, direction(), INFINITY});
     for (auto quality : {BvhQuality::quick, BvhQuality::best}) {
-        const Bvh bvh(device, m.positions, m.triangles, quality);
+        const Bvh bvh(device, m.world(), quality);
         const auto hits = closest(device, bvh, rays);
         const auto blocked = occluded(device, bvh, rays);
         uint differ = 0;

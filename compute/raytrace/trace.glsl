@@ -20,6 +20,7 @@
 #include "engine/group.glsl"
 #include "compute/raytrace/raytrace_io.h"
 #include "compute/raytrace/intersect.h"
+#include "compute/instances/instances.glsl"
 
 const uint no_triangle = 0xffffffffu;
 
@@ -44,19 +45,59 @@ bool trace_step(BvhRef bvh) {
 struct TraceState {
     TraceRay ray;
     uint slot;           // of the closest hit: an element of bvh.triangles
+    uint first_id;       // of its instance, if there are any
     vec3 weights;
 };
 
+// Where the boxes are that are tested: the world, or within an instance, the mesh's own space.
+struct TraceSpace {
+    vec3 origin, inverse;  // of the ray, there; t is the same
+    vec3 pad;              // what boxes are enlarged by; 0 in the world
+    uint floor_;           // how high the stack was where the instance was entered; 0 in the world
+    Instance instance;
+};
+
+TraceSpace trace_in_world(TraceRay ray) {
+    TraceSpace space;
+    space.origin = ray.origin;
+    space.inverse = ray.inverse;
+    space.pad = vec3(0.0);
+    space.floor_ = 0u;
+    return space;
+}
+
+// Into an instance, whose node says how (bvh_is_instance). `space.instance` is the caller's to load, whose lanes may share the work.
+void trace_enter(inout TraceSpace space, TraceRay ray, vec3 axis_x, vec3 axis_y, vec3 axis_z, vec3 at, vec3 far, uint top) {
+    space.floor_ = top;
+    if ((space.instance.flags & instance_in_world) != 0u) return;
+    const vec3 from = ray.origin - at;
+    space.origin = axis_x * from.x + axis_y * from.y + axis_z * from.z;
+    space.inverse = ray_inverses(axis_x * ray.direction.x + axis_y * ray.direction.y + axis_z * ray.direction.z);
+    space.pad = ray.t_max < ray.t_min ? vec3(0.0) : instance_pad(axis_x, axis_y, axis_z, from, far);
+}
+
+void trace_leave(inout TraceSpace space, TraceRay ray) {
+    space.origin = ray.origin;
+    space.inverse = ray.inverse;
+    space.pad = vec3(0.0);
+    space.floor_ = 0u;
+}
+
+uint trace_id(BvhRef bvh, uint slot, uint first_id) { return instanced ? first_id + bvh.triangles.at[slot].id : bvh.triangles.at[slot].id; }
+
 // In `any` mode a ray that has met something gets t_max = -1, so that nothing else meets it.
-void trace_triangle(BvhRef bvh, inout TraceState state, uint slot, vec3 p0, vec3 p1, vec3 p2, const bool any) {
+void trace_triangle(BvhRef bvh, inout TraceState state, TraceSpace space, uint slot, Corners corners, const bool any) {
     float t;
     vec3 weights;
-    if (!triangle_hit(state.ray, p0, p1, p2, t, weights)) return;
+    // In the world, on the very floats that the triangle had if it were not shared: hits are the same, and so is their order.
+    if (instanced) corners = instance_corners(space.instance, corners);
+    if (!triangle_hit(state.ray, corners.p0, corners.p1, corners.p2, t, weights)) return;
     bool closer = t < state.ray.t_max;
     if (!any && t == state.ray.t_max && state.slot != no_triangle)
-        closer = bvh.triangles.at[slot].id < bvh.triangles.at[state.slot].id;
+        closer = trace_id(bvh, slot, space.instance.first_id) < trace_id(bvh, state.slot, state.first_id);
     if (!closer) return;
     state.slot = slot;
+    if (instanced) state.first_id = space.instance.first_id;
     state.ray.t_max = any ? -1.0 : t;
     if (!any) state.weights = weights;
 }
@@ -77,6 +118,7 @@ TraceState trace(BvhRef bvh, vec3 origin, vec3 direction, float t_min, float t_m
     TraceState state;
     state.ray = trace_ray(origin, direction, t_min, t_max);
     state.slot = no_triangle;
+    state.first_id = 0u;
     state.weights = vec3(0.0);
     if (!plain_groups && gl_SubgroupSize == 8u && subgroupBallotBitCount(subgroupBallot(true)) == 8u) trace_packet(bvh, state, any);
     else trace_single(bvh, state, any);
@@ -88,7 +130,7 @@ RayHit trace_closest(BvhRef bvh, vec3 origin, vec3 direction, float t_min, float
     RayHit hit;
     hit.t = state.ray.t_max;
     hit.triangle = no_triangle;
-    if (state.slot != no_triangle) hit.triangle = bvh.triangles.at[state.slot].id;
+    if (state.slot != no_triangle) hit.triangle = trace_id(bvh, state.slot, state.first_id);
     hit.u = state.weights.x;
     hit.v = state.weights.y;
     hit.front = state.weights.z > 0.0;

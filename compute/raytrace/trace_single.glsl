@@ -2,21 +2,32 @@
 // node that are still to come.
 
 void trace_single(BvhRef bvh, inout TraceState state, const bool any) {
-    uint stack_base[bvh_max_depth], stack_order[bvh_max_depth];
-    float stack_entry[bvh_max_depth];  // of the nearest child that waited first: a lower bound for the others
+    uint stack_base[bvh_max_stack], stack_order[bvh_max_stack];
+    float stack_entry[bvh_max_stack];  // of the nearest child that waited first: a lower bound for the others
     uint top = 0u, node = 0u;
     Uint2s words = Uint2s(bvh.nodes);
     Floats points = Floats(bvh.triangles);
+    TraceSpace space = trace_in_world(state.ray);
     while (trace_step(bvh)) {
         const uint at = node * 11u;
         const uvec2 w0 = words.at[at], w1 = words.at[at + 1u], w2 = words.at[at + 2u];
+        if (instanced && bvh_children(w1.y) == bvh_is_instance) {
+            uvec2 w[6];
+            [[unroll]] for (uint i = 0u; i < 6u; ++i) w[i] = words.at[at + 3u + i];
+            space.instance = bvh.instances.at[w2.y];
+            trace_enter(space, state.ray, uintBitsToFloat(uvec3(w[0], w[1].x)), uintBitsToFloat(uvec3(w[1].y, w[2])),
+                        uintBitsToFloat(uvec3(w[3], w[4].x)), uintBitsToFloat(uvec3(w[4].y, w[5])), uintBitsToFloat(uvec3(w0, w1.x)), top);
+            node = w2.x;
+            continue;
+        }
         const vec3 origin = uintBitsToFloat(uvec3(w0, w1.x)), scale = bvh_scale(w1.y);
         const uint children = bvh_children(w1.y), first_child = w2.x, first_triangle = w2.y;
         uint key[8], triangles = 0u;
         [[unroll]] for (uint i = 0u; i < 8u; ++i) {
             const uvec2 child = words.at[at + 3u + i];
-            const float entry = box_entry(bvh_corner(origin, scale, child.x), bvh_corner(origin, scale, child.y), state.ray.origin,
-                                          state.ray.inverse, state.ray.t_min, state.ray.t_max);
+            vec3 lo = bvh_corner(origin, scale, child.x), hi = bvh_corner(origin, scale, child.y);
+            if (instanced) lo -= space.pad, hi += space.pad;
+            const float entry = box_entry(lo, hi, space.origin, space.inverse, state.ray.t_min, state.ray.t_max);
             const bool hit = entry >= 0.0 && i < children;
             triangles |= hit ? trace_leaf(child) : 0u;
             key[i] = hit && child.x >> 24 == 0u ? trace_key(entry, i) : no_key;
@@ -24,9 +35,10 @@ void trace_single(BvhRef bvh, inout TraceState state, const bool any) {
         while (triangles != 0u && trace_step(bvh)) {
             const uint slot = first_triangle + uint(findLSB(triangles)), p = slot * 10u;
             triangles &= triangles - 1u;
-            trace_triangle(bvh, state, slot, vec3(points.at[p], points.at[p + 1u], points.at[p + 2u]),
-                           vec3(points.at[p + 3u], points.at[p + 4u], points.at[p + 5u]),
-                           vec3(points.at[p + 6u], points.at[p + 7u], points.at[p + 8u]), any);
+            trace_triangle(bvh, state, space, slot,
+                           Corners(vec3(points.at[p], points.at[p + 1u], points.at[p + 2u]),
+                                   vec3(points.at[p + 3u], points.at[p + 4u], points.at[p + 5u]),
+                                   vec3(points.at[p + 6u], points.at[p + 7u], points.at[p + 8u])), any);
             if (any && state.slot != no_triangle) return;
         }
         // Batcher's network for eight.
@@ -49,6 +61,7 @@ void trace_single(BvhRef bvh, inout TraceState state, const bool any) {
         }
         bool found = false;
         while (top != 0u && !found && trace_step(bvh)) {
+            if (instanced && top == space.floor_) trace_leave(space, state.ray);
             --top;
             if (stack_entry[top] > state.ray.t_max * box_slack) continue;
             order = stack_order[top];

@@ -11,7 +11,7 @@
 namespace myriad::compute {
 namespace {
 
-using glm::dvec2, glm::dvec3, glm::uvec4, glm::vec3;
+using glm::dvec2, glm::dvec3;
 
 double squared(dvec3 v) { return v.x * v.x + v.y * v.y + v.z * v.z; }
 
@@ -102,19 +102,12 @@ uint64_t hilbert(dvec3 p) {
     return code;
 }
 
-struct Mesh {
-    std::span<const vec3> positions;
-    std::span<const uvec4> triangles;
+Piece whole(const Corners& c) { return {{dvec3(c.p0), {0, 0}}, {dvec3(c.p1), {1, 0}}, {dvec3(c.p2), {0, 1}}}; }
 
-    Piece whole(uint32_t triangle) const {
-        const uvec4 t = triangles[triangle];
-        return {{dvec3(positions[t.x]), {0, 0}}, {dvec3(positions[t.y]), {1, 0}}, {dvec3(positions[t.z]), {0, 1}}};
-    }
-    double area(uint32_t triangle) const {
-        const double area = whole(triangle).area();
-        return std::isfinite(area) ? area : 0;
-    }
-};
+double finite_area(const Piece& piece) {
+    const double area = piece.area();
+    return std::isfinite(area) ? area : 0;
+}
 
 // What is sampled: a fat triangle, or a part of a thin one.
 struct Share {
@@ -123,8 +116,8 @@ struct Share {
     uint32_t triangle;
     uint32_t path;      // which halves it is, from the highest bit on, after a leading 1
 
-    Piece piece(const Mesh& mesh) const {
-        Piece piece = mesh.whole(triangle);
+    Piece piece(const WorldTriangles& world) const {
+        Piece piece = whole(world.corners(triangle));
         for (int bit = int(std::bit_width(path)) - 2; bit >= 0; --bit) piece = piece.halves()[path >> bit & 1];
         return piece;
     }
@@ -143,12 +136,14 @@ void cut(const Piece& piece, Share share, double sample_area, std::vector<Share>
 }
 
 // All shares of the surface along Hilbert's curve: systematic samples of small neighbours are then even, too.
-std::vector<Share> ordered_shares(const Mesh& mesh, double sample_area) {
+std::vector<Share> ordered_shares(const WorldTriangles& world, double sample_area) {
     std::vector<Share> shares;
     std::vector<dvec3> centers;
-    shares.reserve(mesh.triangles.size()), centers.reserve(mesh.triangles.size());
-    for (uint32_t t = 0; t < mesh.triangles.size(); ++t)
-        if (const double area = mesh.area(t); area > 0) cut(mesh.whole(t), {0, area, t, 1}, sample_area, shares, centers);
+    shares.reserve(world.count()), centers.reserve(world.count());
+    world.for_each([&](uint32_t t, uint32_t, const Corners& corners) {
+        const Piece piece = whole(corners);
+        if (const double area = finite_area(piece); area > 0) cut(piece, {0, area, t, 1}, sample_area, shares, centers);
+    });
     dvec3 low(HUGE_VAL), high(-HUGE_VAL);
     for (const dvec3& c : centers) low = glm::min(low, c), high = glm::max(high, c);
     const dvec3 extent = high - low;
@@ -160,8 +155,8 @@ std::vector<Share> ordered_shares(const Mesh& mesh, double sample_area) {
     return shares;
 }
 
-void sample_share(const Mesh& mesh, const Share& share, uint64_t count, double expected, uint32_t seed, SurfaceSample* samples) {
-    const Piece piece = share.piece(mesh).with_longest_first();
+void sample_share(const WorldTriangles& world, const Share& share, uint64_t count, double expected, uint32_t seed, SurfaceSample* samples) {
+    const Piece piece = share.piece(world).with_longest_first();
     for (uint64_t i = 0; i < count; ++i) {
         dvec2 uv = piece.point(i);
         if (expected < 0.5) {  // what stands for several of its like has no reason to be hit in the middle
@@ -174,11 +169,11 @@ void sample_share(const Mesh& mesh, const Share& share, uint64_t count, double e
 }
 
 // Where nothing has area: vertices in turn, of finite triangles.
-std::vector<SurfaceSample> sample_vertices(const Mesh& mesh, uint64_t n) {
+std::vector<SurfaceSample> sample_vertices(const WorldTriangles& world, uint64_t n) {
     std::vector<uint32_t> finite;
-    for (uint32_t t = 0; t < mesh.triangles.size(); ++t)
-        if (const Piece p = mesh.whole(t); std::isfinite(squared(p.in.position) + squared(p.apex.position) + squared(p.out.position)))
-            finite.push_back(t);
+    world.for_each([&](uint32_t t, uint32_t, const Corners& c) {
+        if (std::isfinite(squared(dvec3(c.p0)) + squared(dvec3(c.p1)) + squared(dvec3(c.p2)))) finite.push_back(t);
+    });
     std::vector<SurfaceSample> samples(finite.empty() ? 0 : n);
     for (size_t i = 0; i < samples.size(); ++i) {
         const size_t corner = i / finite.size() % 3;
@@ -189,14 +184,13 @@ std::vector<SurfaceSample> sample_vertices(const Mesh& mesh, uint64_t n) {
 
 }  // namespace
 
-SurfaceSampling sample_surface(std::span<const vec3> positions, std::span<const uvec4> triangles, uint32_t log2_count, uint32_t seed) {
-    assert(log2_count < 32 && triangles.size() < uint64_t(1) << 32);
+SurfaceSampling sample_surface(const WorldTriangles& world, uint32_t log2_count, uint32_t seed) {
+    assert(log2_count < 32 && world.triangles.size() < uint64_t(1) << 32);
     SurfaceSampling result;
     const uint64_t n = uint64_t(1) << log2_count;
-    const Mesh mesh{positions, triangles};
-    for (uint32_t t = 0; t < triangles.size(); ++t) result.area += mesh.area(t);
+    world.for_each([&](uint32_t, uint32_t, const Corners& corners) { result.area += finite_area(whole(corners)); });
     if (!(result.area > 0)) {
-        result.samples = sample_vertices(mesh, n);
+        result.samples = sample_vertices(world, n);
         return result;
     }
     result.samples.resize(n);
@@ -205,7 +199,7 @@ SurfaceSampling sample_surface(std::span<const vec3> positions, std::span<const 
 
     // Systematic sampling: sample i is at (i + phase) / n of the cumulative area, so each share gets the floor or the
     // ceiling of what it is due.
-    const std::vector<Share> shares = ordered_shares(mesh, sample_area);
+    const std::vector<Share> shares = ordered_shares(world, sample_area);
     const double phase = hashed(seed, 0);
     double sum = 0;
     uint64_t first = 0;
@@ -213,7 +207,7 @@ SurfaceSampling sample_surface(std::span<const vec3> positions, std::span<const 
         sum += share.area;
         const bool last = &share == &shares.back();
         const uint64_t end = last ? n : std::clamp(uint64_t(std::max(0.0, std::ceil(sum / sample_area - phase))), first, n);
-        if (end > first) sample_share(mesh, share, end - first, share.area / sample_area, seed, &result.samples[first]);
+        if (end > first) sample_share(world, share, end - first, share.area / sample_area, seed, &result.samples[first]);
         first = end;
     }
     return result;

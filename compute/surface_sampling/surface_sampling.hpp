@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "compute/instances/world.hpp"
 #include "compute/surface_sampling/surface_sample.h"
 
 namespace myriad::compute {
@@ -19,9 +20,8 @@ struct SurfaceSampling {
 // Measured (README.md): covers 99.9 % of the surface; 1.5 covers 99 %; 1.0996 would be a perfect hexagonal lattice.
 inline constexpr double surface_sample_cover = 1.75;
 
-// Triangles are indices xyz (w is the caller's). Deterministic in all arguments. Triangles without area, or with
+// Deterministic in all arguments, and the same whether instances share triangles or are written out. Triangles without area, or with
 // non-finite vertices, get no sample, unless there are no others: then samples sit at vertices and have radius 0.
-SurfaceSampling sample_surface(std::span<const glm::vec3> positions, std::span<const glm::uvec4> triangles, uint32_t log2_count,
-                               uint32_t seed);
+SurfaceSampling sample_surface(const WorldTriangles& world, uint32_t log2_count, uint32_t seed);
 
 }  // namespace myriad::compute

@@ -28,7 +28,7 @@ struct Mesh {
     double area(uint32_t t) const {
         return 0.5 * glm::length(glm::cross(at(t, 1, 0) - at(t, 0, 0), at(t, 0, 1) - at(t, 0, 0)));
     }
-    SurfaceSampling sample(uint32_t log2_count, uint32_t seed = 1) const { return sample_surface(positions, triangles, log2_count, seed); }
+    SurfaceSampling sample(uint32_t log2_count, uint32_t seed = 1) const { return sample_surface({positions, triangles}, log2_count, seed); }
 };
 
 Mesh grid(int n) {

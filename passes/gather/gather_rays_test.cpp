@@ -30,7 +30,7 @@ protected:
         });
     }
     std::vector<vec4> trace(const std::vector<Vpl>& vpls, uint block, uint32_t part) {
-        const compute::Bvh bvh(device, scene.triangles.positions, scene.triangles.triangles);
+        const compute::Bvh bvh(device, world_triangles(scene.triangles));
         const GBuffer gbuffer = g.on(device);
         const auto on = on_device(vpls);
         const auto count = on_device(std::vector<uint>{uint(vpls.size())}), status = on_device(std::vector<uint>{0});

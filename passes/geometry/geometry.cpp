@@ -41,6 +41,17 @@ double srgb_to_linear(uint8_t code) {
     return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
 }
 
+compute::WorldTriangles world_triangles(const scenes::Triangles& triangles) {
+    compute::WorldTriangles world{triangles.positions, triangles.triangles};
+    world.instances.reserve(triangles.placements.size());
+    for (const scenes::Placement& p : triangles.placements) {
+        const bool mirrored = glm::determinant(glm::dmat3(p.to_world)) < 0;
+        world.instances.push_back({vec3(p.to_world[0]), vec3(p.to_world[1]), vec3(p.to_world[2]), vec3(p.to_world[3]), p.first_id,
+                                   p.first_triangle, p.count, (p.in_world ? instance_in_world : 0) | (mirrored ? instance_mirrored : 0)});
+    }
+    return world;
+}
+
 GeometryData geometry_data(const scenes::Scene& scene, const scenes::Triangles& triangles) {
     GeometryData data;
     data.attributes.resize(triangles.positions.size());
@@ -63,6 +74,7 @@ Geometry::Geometry(engine::Device& device, const scenes::Scene& scene, const sce
 Geometry::Geometry(engine::Device& device, const scenes::Triangles& triangles, const GeometryData& data)
     : positions_(engine::upload(device, "scene", "vertex positions", triangles.positions)),
       triangles_(engine::upload(device, "scene", "triangles", triangles.triangles)),
+      instances_(engine::upload(device, "scene", "instances", world_triangles(triangles).instances)),
       attributes_(engine::upload(device, "scene", "vertex attributes", data.attributes)),
       materials_(engine::upload(device, "scene", "materials", data.materials)),
       texels_(engine::upload(device, "scene", "texels", data.texels)) {
@@ -75,7 +87,10 @@ GeometryArrays Geometry::read_arrays(engine::Recorder& recorder) const {
             .triangles = recorder.read(triangles_),
             .attributes = recorder.read(attributes_),
             .materials = recorder.read(materials_),
-            .texels = recorder.read(texels_)};
+            .instances = instances() ? recorder.read(instances_) : Instances{},
+            .texels = recorder.read(texels_),
+            .instance_count = uint(instances_.count()),
+            .padding = 0};
 }
 
 GeometryRef Geometry::read(engine::Recorder& recorder) const {

@@ -1,11 +1,15 @@
 // The scene on the device: triangles, materials, textures; see README.md.
 #pragma once
 
+#include "compute/instances/world.hpp"
 #include "engine/recorder.hpp"
 #include "passes/geometry/geometry_io.h"
 #include "scenes/scene.hpp"
 
 namespace myriad::passes {
+
+// The scene's triangles as trees and samples take them. Refers to `triangles`.
+compute::WorldTriangles world_triangles(const scenes::Triangles& triangles);
 
 // What is uploaded, still on the host: tests look at it, and the product throws it away.
 struct GeometryData {
@@ -24,6 +28,7 @@ public:
 
     const engine::Array<vec3>& positions() const { return positions_; }
     const engine::Array<uvec4>& triangles() const { return triangles_; }
+    const engine::Array<Instance>* instances() const { return instances_.count() ? &instances_ : nullptr; }  // null: nothing is shared
 
 private:
     Geometry(engine::Device& device, const scenes::Triangles& triangles, const GeometryData& data);
@@ -31,6 +36,7 @@ private:
 
     engine::Array<vec3> positions_;
     engine::Array<uvec4> triangles_;
+    engine::Array<Instance> instances_;
     engine::Array<VertexAttributes> attributes_;
     engine::Array<Material> materials_;
     engine::Array<uint> texels_;

@@ -37,7 +37,10 @@ struct GeometryArrays {
     Uint4s triangles;    // three vertices, then the material
     VertexAttributesArray attributes;
     Materials materials;
+    Instances instances; // where the scene shares triangles: `triangles` and vertices are then a mesh's own
     Uints texels;        // 256 floats that decode sRGB, then RGBA8 words, R lowest; empty when nothing is textured
+    uint instance_count;
+    uint padding;
 };
 const uint srgb_table_size = 256u;
 // What goes into push constants, which are short: the address of that one struct, `.at[0]`.
@@ -108,7 +111,7 @@ MYRIAD_FN TexelPair texel_pair(float t, uint size, uint mode) {
 MYRIAD_END
 
 #ifdef __cplusplus
-static_assert(sizeof(myriad::Material) == 84 && sizeof(myriad::VertexAttributes) == 20 && sizeof(myriad::GeometryArrays) == 40 && sizeof(myriad::GeometryRef) == 8);
+static_assert(sizeof(myriad::Material) == 84 && sizeof(myriad::VertexAttributes) == 20 && sizeof(myriad::GeometryArrays) == 56 && sizeof(myriad::GeometryRef) == 8);
 #endif
 
 #endif

@@ -1,5 +1,6 @@
 #include "passes/geometry/lights.hpp"
 
+#include <algorithm>
 #include <numbers>
 
 #include "engine/transfer.hpp"
@@ -52,9 +53,9 @@ dvec3 mean_radiance(const scenes::Scene& scene, const scenes::Material& material
     return radiance * sum / double(texture.rgba.size() / 4);
 }
 
-double area_of(const scenes::Triangles& triangles, const uvec4& t) {
-    const dvec3 p(triangles.positions[t.x]);
-    return 0.5 * glm::length(glm::cross(dvec3(triangles.positions[t.y]) - p, dvec3(triangles.positions[t.z]) - p));
+double area_of(const Corners& c) {
+    const dvec3 p(c.p0);
+    return 0.5 * glm::length(glm::cross(dvec3(c.p1) - p, dvec3(c.p2) - p));
 }
 
 }  // namespace
@@ -69,16 +70,17 @@ LightData light_data(const scenes::Scene& scene, const scenes::Triangles& triang
 
     std::vector<dvec3> radiance;
     for (const scenes::Material& material : scene.materials) radiance.push_back(mean_radiance(scene, material));
-    for (size_t i = 0; i < triangles.triangles.size(); ++i) {
-        const uint32_t material = triangles.triangles[i].w;
-        if (radiance[material] == dvec3(0)) continue;
-        const double area = (scene.materials[material].double_sided ? 2 : 1) * area_of(triangles, triangles.triangles[i]);
+    const bool emits = std::any_of(radiance.begin(), radiance.end(), [](const dvec3& r) { return r != dvec3(0); });
+    if (emits) world_triangles(triangles).for_each([&](uint32_t i, uint32_t stored, const Corners& corners) {
+        const uint32_t material = triangles.triangles[stored].w;
+        if (radiance[material] == dvec3(0)) return;
+        const double area = (scene.materials[material].double_sided ? 2 : 1) * area_of(corners);
         const double power = mean(radiance[material]) * std::numbers::pi * area;
-        if (!(power > 0)) continue;
+        if (!(power > 0)) return;
         data.lights.push_back({.position = vec3(0), .type = light_triangle, .direction = vec3(0), .cdf = 0,
                                .intensity = vec3(radiance[material]), .triangle = uint(i), .extent = vec3(float(area), 0, 0), .cos_outer = 0});
         data.powers.push_back(power);
-    }
+    });
     for (double power : data.powers) data.power += power;
     share_out(data.lights, data.powers);
     return data;

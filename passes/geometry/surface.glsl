@@ -4,6 +4,7 @@
 #define MYRIAD_PASSES_SURFACE_GLSL
 
 #include "passes/geometry/geometry_io.h"
+#include "compute/instances/instances.glsl"
 
 vec3 texel_rgb(GeometryArrays g, TextureRef texture_, uint x, uint y, bool srgb) {
     const uint word = g.texels.at[texture_.first + y * texture_.width + x];
@@ -25,13 +26,30 @@ vec3 texture_rgb(GeometryArrays g, TextureRef texture_, vec2 uv, bool srgb) {
 // (u, v) are barycentric: (1 - u - v) p0 + u p1 + v p2.
 Surface surface_at(GeometryRef geometry, uint triangle, float u, float v) {
     GeometryArrays g = geometry.at[0];
-    const uvec4 corners = g.triangles.at[triangle];
-    const vec3 p0 = g.positions.at[corners.x];
-    const vec3 p1 = g.positions.at[corners.y];
-    const vec3 p2 = g.positions.at[corners.z];
-    const VertexAttributes a0 = g.attributes.at[corners.x];
-    const VertexAttributes a1 = g.attributes.at[corners.y];
-    const VertexAttributes a2 = g.attributes.at[corners.z];
+    Instance instance;
+    uint stored = triangle;
+    if (instanced) {
+        instance = g.instances.at[find_instance(g.instances, g.instance_count, triangle)];
+        stored = instance.first_triangle + (triangle - instance.first_id);
+    }
+    const bool placed = instanced && (instance.flags & instance_in_world) == 0u;
+    uvec4 corners = g.triangles.at[stored];
+    if (placed && (instance.flags & instance_mirrored) != 0u) corners.yz = corners.zy;
+    vec3 p0 = g.positions.at[corners.x];
+    vec3 p1 = g.positions.at[corners.y];
+    vec3 p2 = g.positions.at[corners.z];
+    VertexAttributes a0 = g.attributes.at[corners.x];
+    VertexAttributes a1 = g.attributes.at[corners.y];
+    VertexAttributes a2 = g.attributes.at[corners.z];
+    if (placed) {
+        p0 = instance_point(instance, p0);
+        p1 = instance_point(instance, p1);
+        p2 = instance_point(instance, p2);
+        // Vertex by vertex, as flatten() does: a normal that is interpolated before is another one where the scale is uneven.
+        a0.normal = unit_or(instance_normal(instance, a0.normal), vec3(0.0, 1.0, 0.0));
+        a1.normal = unit_or(instance_normal(instance, a1.normal), vec3(0.0, 1.0, 0.0));
+        a2.normal = unit_or(instance_normal(instance, a2.normal), vec3(0.0, 1.0, 0.0));
+    }
     const float w = 1.0 - u - v;
     const vec2 uv = w * a0.texcoord + u * a1.texcoord + v * a2.texcoord;
     const Material material = g.materials.at[corners.w];

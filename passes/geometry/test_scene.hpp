@@ -87,7 +87,7 @@ struct UploadedScene {
     LightTable lights;
 
     UploadedScene(engine::Device& device, const TestScene& from)
-        : geometry(device, from.scene, from.triangles), bvh(device, from.triangles.positions, from.triangles.triangles),
+        : geometry(device, from.scene, from.triangles), bvh(device, world_triangles(from.triangles)),
           lights(device, from.scene, from.triangles) {}
 };
 

@@ -43,7 +43,7 @@ protected:
         const auto device_views = up(views);
         const auto count = up(std::vector<uint>{std::min(exist, n)});
         const GBuffer gbuffer = receivers.on(on);
-        compute::Bsh tree(on, scene.triangles.positions, scene.triangles.triangles, log2_samples, 1);
+        compute::Bsh tree(on, world_triangles(scene.triangles), log2_samples, 1);
         GatherPass gather(on, GatherVisibility::maps, width, height);
         const uint64_t words = map_texels(settings.map_size);
         engine::Array<uint> all(on, "test", "all maps", n * words, engine::Location::host);

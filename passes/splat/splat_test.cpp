@@ -44,7 +44,7 @@ protected:
     };
     Tree grow(const TestScene& scene, uint32_t log2_samples) {
         const scenes::Triangles& t = scene.triangles;
-        Tree tree{scene, on_device(t.positions), on_device(t.triangles), Bsh(device, t.positions, t.triangles, log2_samples, 1), {}};
+        Tree tree{scene, on_device(t.positions), on_device(t.triangles), Bsh(device, {t.positions, t.triangles}, log2_samples, 1), {}};
         if (tree.bsh.empty()) return tree;
         engine::Recorder recorder(device);
         tree.bsh.refit(recorder, tree.positions, tree.triangles);

@@ -70,7 +70,7 @@ protected:
         const engine::Array<uint> status(device, "test", "status", 1);
         engine::Recorder recorder(device);
         recorder.fill(status, 0);
-        compute::RayQuery(device).closest(recorder, scene.bvh, on_device_rays, hits, status);
+        compute::RayQuery(device, scene.bvh).closest(recorder, scene.bvh, on_device_rays, hits, status);
         recorder.submit_and_wait();
         const auto records = engine::download(device, hits);
         double met = 0, sum = 0, squares = 0;

@@ -175,19 +175,20 @@ void bench_manylods(engine::Device& device, const BenchOptions& options, const R
     // Views: one-bounce VPLs of the scene's lights. Paths that leave the scene make none, so more are shot than are used.
     const passes::Geometry geometry(device, scene, triangles);
     const passes::LightTable lights(device, scene, triangles);
-    const compute::Bvh bvh(device, triangles.positions, triangles.triangles);
-    passes::VplPass vpls(device, most * 4);
-    compute::Bsh tree(device, triangles.positions, triangles.triangles, options.log2_samples, options.seed);
+    const compute::WorldTriangles world = passes::world_triangles(triangles);
+    const compute::Bvh bvh(device, world);
+    passes::VplPass vpls(device, most * 4, bvh.constants());
+    compute::Bsh tree(device, world, options.log2_samples, options.seed);
     engine::Recorder recorder(device);
     vpls.record(recorder, geometry, bvh, lights, 1, options.seed);
-    tree.refit(recorder, geometry.positions(), geometry.triangles());
+    tree.refit(recorder, geometry.positions(), geometry.triangles(), geometry.instances());
     recorder.submit_and_wait();
     const uint alive = engine::download(device, vpls.count())[0];
     if (alive < most) throw InputError("\"" + source + "\" yields " + std::to_string(alive) + " VPLs, fewer than --views " + std::to_string(most));
     std::vector<View> views = engine::download(device, vpls.views(), alive);
     std::vector<View> spread(most);  // evenly over all paths
     for (uint32_t i = 0; i < most; ++i) spread[i] = views[size_t(i) * alive / most];
-    std::printf("scene: %s, %zu triangles, 2^%u samples, %u blocks, maps 2 x %u^2, epsilon %g\n", source.c_str(), triangles.triangles.size(),
+    std::printf("scene: %s, %zu triangles, 2^%u samples, %u blocks, maps 2 x %u^2, epsilon %g\n", source.c_str(), size_t(triangles.count()),
                 tree.depth(), tree.blocks(), options.map_size, options.epsilon);
 
     NativeTree native{engine::download(device, tree.frames()), engine::download(device, tree.spheres()), engine::download(device, tree.cones()),

@@ -1,0 +1,47 @@
+// A scene's triangles as they stand in the world, however they are stored; see README.md.
+#pragma once
+
+#include <algorithm>
+#include <cassert>
+#include <span>
+#include <vector>
+
+#include "compute/instances/instances.h"
+#include "engine/program.hpp"
+
+namespace myriad::compute {
+
+struct WorldTriangles {
+    std::span<const glm::vec3> positions;
+    std::span<const glm::uvec4> triangles;  // as stored: three indices into positions, and a fourth word that is the caller's
+    std::vector<Instance> instances = {};   // by ids, without gaps; empty: a triangle's id is its index
+
+    bool shared() const { return !instances.empty(); }
+    uint32_t count() const { return shared() ? instances.back().first_id + instances.back().count : uint32_t(triangles.size()); }
+
+    const Instance& instance(uint32_t id) const {
+        const auto after = std::upper_bound(instances.begin(), instances.end(), id, [](uint32_t i, const Instance& at) { return i < at.first_id; });
+        assert(after != instances.begin());
+        return after[-1];
+    }
+    Corners stored(uint32_t triangle) const {
+        const glm::uvec4 t = triangles[triangle];
+        return {positions[t.x], positions[t.y], positions[t.z]};
+    }
+    Corners corners(uint32_t id) const {
+        if (!shared()) return stored(id);
+        const Instance& i = instance(id);
+        return instance_corners(i, stored(i.first_triangle + (id - i.first_id)));
+    }
+    // visit(id, index as stored, corners) for all triangles, in the order of ids.
+    template <class Visit>
+    void for_each(Visit visit) const {
+        for (uint32_t t = 0; t < triangles.size() && !shared(); ++t) visit(t, t, stored(t));
+        for (const Instance& i : instances)
+            for (uint32_t t = 0; t < i.count; ++t) visit(i.first_id + t, i.first_triangle + t, instance_corners(i, stored(i.first_triangle + t)));
+    }
+    // What kernels that read these triangles are specialised by.
+    engine::Constants constants() const { return {{instanced_constant, shared()}}; }
+};
+
+}  // namespace myriad::compute
