@@ -19,7 +19,7 @@ using glm::vec3;
 
 // FNV-1a over everything that is rendered.
 uint64_t hash(Scene& scene) {
-    const Triangles t = flatten(scene);
+    const Triangles t = flatten(scene, Sharing::never);
     uint64_t h = 14695981039346656037u;
     const auto add = [&](const void* data, size_t bytes) {
         for (size_t i = 0; i < bytes; ++i) h = (h ^ static_cast<const uint8_t*>(data)[i]) * 1099511628211u;
@@ -56,7 +56,7 @@ class Atrium : public testing::Test {
 protected:
     static void SetUpTestSuite() {
         scene = new Scene(load("builtin:atrium"));
-        triangles = new Triangles(flatten(*scene));
+        triangles = new Triangles(flatten(*scene, Sharing::never));
     }
     static void TearDownTestSuite() {
         delete scene;
@@ -154,7 +154,7 @@ TEST(Builtin, EqualSeedsEqualScenes) {
 TEST(Builtin, TrianglesAreClean) {
     for (const char* source : {"builtin:atrium", "builtin:atrium?detail=0.25", "builtin:cornell", "builtin:cornell?cells=1&light=point"}) {
         Scene scene = load(source);
-        const Triangles t = flatten(scene);
+        const Triangles t = flatten(scene, Sharing::never);
         EXPECT_TRUE(scene.warnings.empty()) << source << ": " << scene.warnings[0];
         size_t degenerate = 0, unfit = 0, against = 0, out_of_range = 0;
         for (size_t i = 0; i < t.positions.size(); ++i)
@@ -201,8 +201,8 @@ TEST_F(Atrium, IsAsBigAsItSays) {
     ASSERT_EQ(scene->lights.size(), 1u);
     EXPECT_EQ(scene->lights[0].type, Light::Type::directional);
     Scene coarse = load("builtin:atrium?detail=0.5"), fine = load("builtin:atrium?detail=2");
-    EXPECT_LT(flatten(coarse).triangles.size(), triangles->triangles.size() * 3 / 4);
-    EXPECT_GT(flatten(fine).triangles.size(), triangles->triangles.size() * 2);
+    EXPECT_LT(flatten(coarse, Sharing::never).triangles.size(), triangles->triangles.size() * 3 / 4);
+    EXPECT_GT(flatten(fine, Sharing::never).triangles.size(), triangles->triangles.size() * 2);
 }
 
 // From every camera: whatever is seen is a surface of the scene, from its front. No void, no inside of a wall.

@@ -347,7 +347,7 @@ TEST(Guide, equal_tallies_leave_points_where_they_are) {
 TestScene loaded(const std::string& source) {
     TestScene test;
     test.scene = scenes::load(source);
-    test.triangles = scenes::flatten(test.scene);
+    test.triangles = scenes::flatten(test.scene, scenes::Sharing::never);
     return test;
 }
 
