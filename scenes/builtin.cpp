@@ -71,6 +71,8 @@ const std::vector<Builtin>& builtins() {
          {{"detail", "1", {}, 0.25f, 4}}, make_atrium},
         {"cornell", "the Cornell box, lit by its ceiling panel or by a point light",
          {{"light", "panel", {"panel", "point"}}, {"cells", "8", {}, 1, 256}}, make_cornell},
+        {"hairball", "a ball of hair in a photographer's booth, 168 triangles a strand",
+         {{"strands", "5000", {}, 1, 50000}, {"thickness", "1", {}, 0.25f, 4}}, make_hairball},
     };
     return all;
 }

@@ -41,5 +41,6 @@ Scene load_builtin(const std::string& query, uint32_t seed);
 
 Scene make_atrium(const BuiltinOptions& options, uint32_t seed);
 Scene make_cornell(const BuiltinOptions& options, uint32_t seed);
+Scene make_hairball(const BuiltinOptions& options, uint32_t seed);
 
 }  // namespace myriad::scenes

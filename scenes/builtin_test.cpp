@@ -3,54 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <map>
 #include <set>
-#include <tuple>
 
 #include <gtest/gtest.h>
 
 #include "scenes/builtin/kit.hpp"
+#include "scenes/builtin_kit.hpp"
 
 namespace myriad::scenes {
 namespace {
 
 using glm::vec3;
-
-// FNV-1a over everything that is rendered.
-uint64_t hash(Scene& scene) {
-    const Triangles t = flatten(scene, Sharing::never);
-    uint64_t h = 14695981039346656037u;
-    const auto add = [&](const void* data, size_t bytes) {
-        for (size_t i = 0; i < bytes; ++i) h = (h ^ static_cast<const uint8_t*>(data)[i]) * 1099511628211u;
-    };
-    add(t.positions.data(), t.positions.size() * sizeof(vec3));
-    add(t.normals.data(), t.normals.size() * sizeof(vec3));
-    add(t.triangles.data(), t.triangles.size() * sizeof(glm::uvec4));
-    for (const auto& texture : scene.textures) add(texture.rgba.data(), texture.rgba.size());
-    return h;
-}
-
-uint64_t hash_of(const char* source, uint32_t seed) {
-    Scene scene = load(source, seed);
-    return hash(scene);
-}
-
-// The triangle that a ray meets first, by brute force; none if it escapes.
-size_t first_hit(const Triangles& t, const vec3& from, const vec3& way) {
-    float best = std::numeric_limits<float>::infinity();
-    size_t hit = none;
-    for (size_t i = 0; i < t.triangles.size(); ++i) {
-        const vec3 a = t.positions[t.triangles[i].x], e1 = t.positions[t.triangles[i].y] - a, e2 = t.positions[t.triangles[i].z] - a;
-        const vec3 p = glm::cross(way, e2);
-        const float det = glm::dot(e1, p);
-        if (std::abs(det) < 1e-12f) continue;
-        const vec3 s = from - a, q = glm::cross(s, e1);
-        const float u = glm::dot(s, p) / det, v = glm::dot(way, q) / det, d = glm::dot(e2, q) / det;
-        if (u >= 0 && v >= 0 && u + v <= 1 && d > 1e-4f && d < best) best = d, hit = i;
-    }
-    return hit;
-}
 
 class Atrium : public testing::Test {
 protected:
@@ -61,16 +24,6 @@ protected:
     static void TearDownTestSuite() {
         delete scene;
         delete triangles;
-    }
-    static uint32_t material(const std::string& name) {
-        for (uint32_t i = 0; i < scene->materials.size(); ++i)
-            if (scene->materials[i].name == name) return i;
-        return none;
-    }
-    static bool sees_back(size_t triangle, const vec3& way) {
-        const auto c = triangles->triangles[triangle];
-        const auto& p = triangles->positions;
-        return !scene->materials[c.w].double_sided && glm::dot(glm::cross(p[c.y] - p[c.x], p[c.z] - p[c.x]), way) > 0;
     }
     static Scene* scene;
     static Triangles* triangles;
@@ -90,34 +43,6 @@ TEST(Kit, RandomIsFixed) {
         sum += x;
     }
     EXPECT_NEAR(sum / 10000, 0.5, 0.02);
-}
-
-// Directed edges that no other triangle has in the opposite direction: 0 for a closed, consistently oriented mesh.
-size_t open_edges(const Primitive& p) {
-    const auto key = [&](uint32_t i) {
-        // Positions, not vertex numbers: hard edges duplicate vertices. Rounded, for a seam may differ in its last bits.
-        const vec3 v = p.positions[i];
-        return std::tuple(std::lround(v.x * 1e5), std::lround(v.y * 1e5), std::lround(v.z * 1e5));
-    };
-    std::map<std::pair<decltype(key(0)), decltype(key(0))>, int> edges;
-    for (size_t i = 0; i < p.indices.size(); i += 3)
-        for (size_t k = 0; k < 3; ++k) ++edges[{key(p.indices[i + k]), key(p.indices[i + (k + 1) % 3])}];
-    size_t open = 0;
-    for (const auto& [edge, count] : edges) {
-        const auto back = edges.find({edge.second, edge.first});
-        open += back == edges.end() || back->second != count;
-    }
-    return open;
-}
-
-// Positive when the faces look outward.
-double signed_volume(const Primitive& p) {
-    double sum = 0;
-    for (size_t i = 0; i < p.indices.size(); i += 3) {
-        const glm::dvec3 a(p.positions[p.indices[i]]), b(p.positions[p.indices[i + 1]]), c(p.positions[p.indices[i + 2]]);
-        sum += glm::dot(a, glm::cross(b, c)) / 6;
-    }
-    return sum;
 }
 
 TEST(Kit, SolidsAreClosedAndFaceOutward) {
@@ -147,12 +72,15 @@ TEST(Kit, MirroredAppendKeepsTheFront) {
 }
 
 TEST(Builtin, EqualSeedsEqualScenes) {
-    for (const char* source : {"builtin:atrium?detail=0.5", "builtin:cornell"}) EXPECT_EQ(hash_of(source, 1), hash_of(source, 1)) << source;
-    EXPECT_NE(hash_of("builtin:atrium?detail=0.5", 1), hash_of("builtin:atrium?detail=0.5", 2));
+    for (const char* source : {"builtin:atrium?detail=0.5", "builtin:cornell", "builtin:hairball?strands=300"})
+        EXPECT_EQ(hash_of(source, 1), hash_of(source, 1)) << source;
+    for (const char* source : {"builtin:atrium?detail=0.5", "builtin:hairball?strands=300"})
+        EXPECT_NE(hash_of(source, 1), hash_of(source, 2)) << source;
 }
 
 TEST(Builtin, TrianglesAreClean) {
-    for (const char* source : {"builtin:atrium", "builtin:atrium?detail=0.25", "builtin:cornell", "builtin:cornell?cells=1&light=point"}) {
+    for (const char* source : {"builtin:atrium", "builtin:atrium?detail=0.25", "builtin:cornell",
+                               "builtin:cornell?cells=1&light=point", "builtin:hairball?strands=20000", "builtin:hairball?strands=1&thickness=0.25"}) {
         Scene scene = load(source);
         const Triangles t = flatten(scene, Sharing::never);
         EXPECT_TRUE(scene.warnings.empty()) << source << ": " << scene.warnings[0];
@@ -174,7 +102,7 @@ TEST(Builtin, TrianglesAreClean) {
 }
 
 TEST(Builtin, MaterialsArePhysical) {
-    for (const char* source : {"builtin:atrium", "builtin:cornell"}) {
+    for (const char* source : {"builtin:atrium", "builtin:cornell", "builtin:hairball?strands=10"}) {
         for (const auto& m : load(source).materials) {
             const float most = std::max({m.base_color.x, m.base_color.y, m.base_color.z});
             EXPECT_EQ(m.metallic, 0) << m.name;
@@ -212,25 +140,16 @@ TEST_F(Atrium, CamerasSeeFrontsOnly) {
         names.insert(camera.name);
         const vec3 eye(camera.to_world[3]);
         EXPECT_TRUE(std::abs(eye.x) < 15.2f && std::abs(eye.z) < 7.7f && eye.y > 0 && eye.y < 10);
-        size_t void_rays = 0, backs = 0;
-        const float t = std::tan(camera.yfov / 2);
-        for (int j = 0; j < 7; ++j)
-            for (int i = 0; i < 12; ++i) {
-                const vec3 local((float(i) / 5.5f - 1) * t * 16 / 9, (float(j) / 3 - 1) * t, -1);
-                const vec3 way = glm::normalize(glm::mat3(camera.to_world) * local);
-                const size_t hit = first_hit(*triangles, eye, way);
-                void_rays += hit == none;
-                if (hit != none) backs += sees_back(hit, way);
-            }
-        EXPECT_EQ(void_rays, 0u) << camera.name;
-        EXPECT_EQ(backs, 0u) << camera.name;
+        const Seen seen = seen_from(*scene, *triangles, camera);
+        EXPECT_EQ(seen.nothing, 0u) << camera.name;
+        EXPECT_EQ(seen.backs, 0u) << camera.name;
     }
     EXPECT_EQ(names, (std::set<std::string>{"court", "gallery", "corner"}));
 }
 
 // From inside the galleries, away from the court and upwards, no ray reaches the sky, the outside, or the back of a face.
 TEST_F(Atrium, GalleriesDoNotLeak) {
-    const uint32_t sky = material("sky");
+    const uint32_t sky = material_named(*scene, "sky");
     ASSERT_NE(sky, none);
     size_t escaped = 0, backs = 0;
     for (float sx : {-1.0f, 1.0f})
@@ -244,7 +163,7 @@ TEST_F(Atrium, GalleriesDoNotLeak) {
                         if (from.x * from.x > 144 && way.x * sx < 0) continue;
                         const size_t hit = first_hit(*triangles, from, way);
                         escaped += hit == none || triangles->triangles[hit].w == sky;
-                        if (hit != none) backs += sees_back(hit, way);
+                        if (hit != none) backs += sees_back(*scene, *triangles, hit, way);
                     }
     EXPECT_EQ(escaped, 0u);
     EXPECT_EQ(backs, 0u);

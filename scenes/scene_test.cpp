@@ -288,7 +288,7 @@ TEST(Load, NamesWhatExists) {
     EXPECT_NE(message("builtin:cornell?cells").find("1 to 256"), std::string::npos);
     EXPECT_NE(message("builtin:cornell?").find("(no InputError)"), std::string::npos);
     EXPECT_NE(message("/no/such/file.glb").find("/no/such/file.glb"), std::string::npos);
-    EXPECT_EQ(builtin_names().size(), 2u);
+    EXPECT_EQ(builtin_names().size(), 3u);
 }
 
 }  // namespace

@@ -329,9 +329,9 @@ private:
         Primitive iron, left, right;
         rod(iron, bay - 0.3f, detail_);
         kit::append(of(iron_), iron, side.frame * moved({x, rod_height, z}));
-        const Drape shape{clear / 2 + 0.04f, fall, tied, 6};
-        drape(left, shape, random_, detail_);
-        drape(right, shape, random_, detail_);
+        const kit::Drape shape{clear / 2 + 0.04f, fall, tied, 6};
+        kit::drape(left, shape, random_, detail_);
+        kit::drape(right, shape, random_, detail_);
         kit::append(of(cloths_[color]), left, side.frame * moved({x - clear / 2, rod_height, z}));
         // The right one is the mirror image: a half turn, for cloth has no front.
         kit::append(of(cloths_[color]), right, side.frame * moved({x + clear / 2, rod_height, z}) * turned(180));

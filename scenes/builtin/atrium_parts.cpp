@@ -11,19 +11,12 @@ namespace {
 using glm::mat4;
 using glm::vec2;
 using glm::vec3;
+using kit::arc;
 using kit::pi;
 using kit::Profile;
 
 mat4 moved(vec3 by) { return glm::translate(mat4(1), by); }
 mat4 turned(float degrees, vec3 axis) { return glm::rotate(mat4(1), glm::radians(degrees), axis); }
-
-// Appends a quarter-round or a full torus bulge to a profile: an arc around `centre` from angle a to b (radians).
-void arc(Profile& profile, vec2 centre, float radius, float a, float b, int n) {
-    for (int i = 0; i <= n; ++i) {
-        const float angle = a + (b - a) * float(i) / float(n);
-        profile.push_back(centre + radius * vec2(std::cos(angle), std::sin(angle)));
-    }
-}
 
 // Attic base and bell capital around a shaft from radius r0 at y0 to r1 at y1; the shaft itself is added by the caller.
 void base_and_capital(Primitive& out, float r0, float r1, float height, float abacus, float detail) {
@@ -238,22 +231,6 @@ void shrub(Primitive& leaves, kit::Random& random, float detail) {
     }
     // A stem, so that the ball stands on something.
     kit::lathe(leaves, {{0.03f, 0.5f}, {0.025f, 1.0f}}, 6);
-}
-
-void drape(Primitive& cloth, const Drape& shape, kit::Random& random, float detail) {
-    const float phase = random.real(0, 2 * pi), second = random.real(0, 2 * pi), sway = random.real(-0.03f, 0.03f);
-    const auto point = [&](float u, float v) {
-        // 1 at the rod, `tied` at the tie, opening again below it.
-        const float pull = v < 0.6f ? std::pow(v / 0.6f, 2.2f) : 1 - 0.35f * std::pow((v - 0.6f) / 0.4f, 0.8f);
-        const float width = 1 - (1 - shape.tied) * pull;
-        const float wave = 2 * pi * (shape.folds * u + 0.10f * std::sin(3 * v + phase));
-        // Cloth keeps its length: what it loses in width goes into deeper folds.
-        const float depth = 0.028f + 0.05f * (1 - width) + 0.02f * v;
-        const float fold = std::sin(wave + phase) + 0.2f * std::sin(1.37f * wave + second);
-        const float hem = 0.02f * std::sin(wave * 0.5f + second) * v;
-        return vec3(shape.width * u * width + 0.012f * width * width * std::cos(wave + phase) + sway * v * v, -shape.height * v + hem, depth * fold);
-    };
-    kit::patch(cloth, steps(9 * shape.folds, detail), steps(20, detail), [&](float u, float v) { return point(1 - u, v); }, {2, 4});
 }
 
 void runner(Primitive& cloth, float width, float fall, kit::Random& random, float detail) {

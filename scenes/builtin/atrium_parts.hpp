@@ -12,7 +12,7 @@ inline constexpr float gallery_floor = 0.12f;  // the lower gallery stands a ste
 inline constexpr float lower_spring = 3.1f, upper_floor = 5.4f, upper_spring = 8.15f;
 inline constexpr float wall_thickness = 0.5f;
 
-inline int steps(float n, float detail) { return std::max(3, int(n * detail + 0.5f)); }
+using kit::steps;
 
 // Standing on y = 0, `height` to the top of the abacus. The lower order is fluted, the upper one twisted and stands on
 // its pedestal.
@@ -36,13 +36,6 @@ void window(Primitive& frame, Primitive& wood, float detail);
 void fountain(Primitive& stone, Primitive& water, float detail);
 void pot(Primitive& clay, Primitive& earth, float detail);
 void shrub(Primitive& leaves, kit::Random& random, float detail);
-
-// A drape that hangs from (0, 0, 0) downwards, `width` wide at the top towards +x, gathered to `tied` of its width at
-// 60 % of its height (1: hangs straight). Folds run vertically.
-struct Drape {
-    float width, height, tied, folds;
-};
-void drape(Primitive& cloth, const Drape& shape, kit::Random& random, float detail);
 
 // A runner laid over the balustrade rail and the cornice below it, falling into the court at +z; centred in x.
 void runner(Primitive& cloth, float width, float fall, kit::Random& random, float detail);

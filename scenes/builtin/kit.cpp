@@ -13,28 +13,6 @@ using glm::vec3;
 
 int cells(float length, float cell) { return std::max(1, int(std::lround(length / cell))); }
 
-// Adds a triangle unless it has (nearly) no area, as at the poles of a lathe.
-void triangle(Primitive& out, uint32_t a, uint32_t b, uint32_t c) {
-    const vec3 n = glm::cross(out.positions[b] - out.positions[a], out.positions[c] - out.positions[a]);
-    if (glm::length(n) > 1e-9f) out.indices.insert(out.indices.end(), {a, b, c});
-}
-
-// Joins (nu + 1) x (nv + 1) vertices that start at `first`, u running fastest, into triangles facing du x dv.
-void join_grid(Primitive& out, uint32_t first, int nu, int nv) {
-    for (int j = 0; j < nv; ++j)
-        for (int i = 0; i < nu; ++i) {
-            const uint32_t a = first + uint32_t(j * (nu + 1) + i), b = a + 1, c = a + uint32_t(nu) + 1, d = c + 1;
-            triangle(out, a, b, d);
-            triangle(out, a, d, c);
-        }
-}
-
-void vertex(Primitive& out, vec3 position, vec3 normal, vec2 texcoord) {
-    out.positions.push_back(position);
-    out.normals.push_back(normal);
-    out.texcoords.push_back(texcoord);
-}
-
 // du x dv of `point`, one-sided at the border. Where the patch is pinched to a point there is none: step inside.
 vec3 patch_normal(const Patch& point, float u, float v) {
     constexpr float h = 1e-3f;
@@ -50,6 +28,26 @@ vec3 patch_normal(const Patch& point, float u, float v) {
 }
 
 }  // namespace
+
+void triangle(Primitive& out, uint32_t a, uint32_t b, uint32_t c) {
+    const vec3 n = glm::cross(out.positions[b] - out.positions[a], out.positions[c] - out.positions[a]);
+    if (glm::length(n) > 1e-9f) out.indices.insert(out.indices.end(), {a, b, c});
+}
+
+void join_grid(Primitive& out, uint32_t first, int nu, int nv) {
+    for (int j = 0; j < nv; ++j)
+        for (int i = 0; i < nu; ++i) {
+            const uint32_t a = first + uint32_t(j * (nu + 1) + i), b = a + 1, c = a + uint32_t(nu) + 1, d = c + 1;
+            triangle(out, a, b, d);
+            triangle(out, a, d, c);
+        }
+}
+
+void vertex(Primitive& out, vec3 position, vec3 normal, vec2 texcoord) {
+    out.positions.push_back(position);
+    out.normals.push_back(normal);
+    out.texcoords.push_back(texcoord);
+}
 
 Random::Random(uint64_t seed) : state_(seed * 6364136223846793005u + 1442695040888963407u) { bits(), bits(); }
 
@@ -93,22 +91,25 @@ void box(Primitive& out, vec3 lo, vec3 hi, float cell, unsigned faces) {
     if (faces & front) quad(out, lo + z, x, y, nx, ny);
 }
 
-void sweep(Primitive& out, const Profile& profile, int nt, const Placement& place) {
+std::array<vec2, 2> profile_tangents(const Profile& profile, size_t segment) {
     const size_t n = profile.size();
     const bool closed = profile.front() == profile.back();
-    const auto direction = [&](size_t segment) { return glm::normalize(profile[segment + 1] - profile[segment]); };
     constexpr float cos_crease = 0.825f;  // 0.6 radians
+    const auto direction = [&](size_t s) { return glm::normalize(profile[s + 1] - profile[s]); };
+    const vec2 here = direction(segment);
+    const auto blend = [&](bool has, size_t other) {
+        if (!has) return here;
+        const vec2 there = direction(other);
+        return glm::dot(here, there) < cos_crease ? here : glm::normalize(here + there);
+    };
+    return {blend(segment > 0 || closed, segment > 0 ? segment - 1 : n - 2), blend(segment + 2 < n || closed, segment + 2 < n ? segment + 1 : 0)};
+}
 
+void sweep(Primitive& out, const Profile& profile, int nt, const Placement& place) {
     float along = 0;  // arc length: the second texture coordinate
-    for (size_t s = 0; s + 1 < n; ++s) {
-        const vec2 here = direction(s);
-        // The tangent at each end of the segment: shared with the neighbour where the profile is smooth.
-        const auto blend = [&](bool has, size_t other) {
-            if (!has) return here;
-            const vec2 there = direction(other);
-            return glm::dot(here, there) < cos_crease ? here : glm::normalize(here + there);
-        };
-        const vec2 tangents[2] = {blend(s > 0 || closed, s > 0 ? s - 1 : n - 2), blend(s + 2 < n || closed, s + 2 < n ? s + 1 : 0)};
+    for (size_t s = 0; s + 1 < profile.size(); ++s) {
+        const vec2 here = glm::normalize(profile[s + 1] - profile[s]);
+        const auto tangents = profile_tangents(profile, s);
         const float length = glm::length(profile[s + 1] - profile[s]);
         const uint32_t first = uint32_t(out.positions.size());
         for (int i = 0; i <= nt; ++i)
@@ -134,6 +135,21 @@ void lathe(Primitive& out, const Profile& profile, int sides, const RadiusFactor
         const float angle = 2 * pi * (t == 1 ? 0 : t), r = radius_factor ? p.x * radius_factor(angle, p.y) : p.x;
         return vec3(r * std::cos(angle), p.y, r * std::sin(angle));
     });
+}
+
+void lathe(Primitive& out, const Profile& profile, int sides, vec2 axis, float from, float to, const RadiusFactor& radius_factor) {
+    const bool whole = std::abs(to - from - 2 * pi) < 1e-4f;
+    sweep(out, profile, sides, [&](vec2 p, float t) {
+        const float angle = from + (to - from) * (whole && t == 1 ? 0 : t), r = radius_factor ? p.x * radius_factor(angle, p.y) : p.x;
+        return vec3(axis.x + r * std::cos(angle), p.y, axis.y + r * std::sin(angle));
+    });
+}
+
+void arc(Profile& profile, vec2 centre, float radius, float from, float to, int n) {
+    for (int i = 0; i <= n; ++i) {
+        const float angle = from + (to - from) * float(i) / float(n);
+        profile.push_back(centre + radius * vec2(std::cos(angle), std::sin(angle)));
+    }
 }
 
 void ring(Primitive& out, const Profile& profile, vec2 half, float cell) {
@@ -183,6 +199,22 @@ void groin_vault(Primitive& out, vec2 half, float rise, int cells) {
             for (int turn = 0; turn < k; ++turn) at = {-at.y, at.x};
             return vec3(at.x * half.x, rise * std::sin(pi * u), at.y * half.y);
         });
+}
+
+void drape(Primitive& cloth, const Drape& shape, Random& random, float detail) {
+    const float phase = random.real(0, 2 * pi), second = random.real(0, 2 * pi), sway = random.real(-0.03f, 0.03f);
+    const auto point = [&](float u, float v) {
+        // 1 at the rod, `tied` at the tie, opening again below it.
+        const float pull = v < 0.6f ? std::pow(v / 0.6f, 2.2f) : 1 - 0.35f * std::pow((v - 0.6f) / 0.4f, 0.8f);
+        const float width = 1 - (1 - shape.tied) * pull;
+        const float wave = 2 * pi * (shape.folds * u + 0.10f * std::sin(3 * v + phase));
+        // Cloth keeps its length: what it loses in width goes into deeper folds.
+        const float depth = 0.028f + 0.05f * (1 - width) + 0.02f * v;
+        const float fold = std::sin(wave + phase) + 0.2f * std::sin(1.37f * wave + second);
+        const float hem = 0.02f * std::sin(wave * 0.5f + second) * v;
+        return vec3(shape.width * u * width + 0.012f * width * width * std::cos(wave + phase) + sway * v * v, -shape.height * v + hem, depth * fold);
+    };
+    patch(cloth, steps(9 * shape.folds, detail), steps(20, detail), [&](float u, float v) { return point(1 - u, v); }, {2, 4});
 }
 
 void append(Primitive& out, const Primitive& in, const glm::mat4& transform) {

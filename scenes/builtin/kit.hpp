@@ -3,6 +3,7 @@
 // two faces lie in the same plane.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <vector>
 
@@ -11,6 +12,9 @@
 namespace myriad::scenes::kit {
 
 inline constexpr float pi = 3.14159265358979f;
+
+// How many steps something has that has n of them at detail 1.
+inline int steps(float n, float detail) { return n * detail < 3 ? 3 : int(n * detail + 0.5f); }
 
 // PCG32: small, and the same everywhere, which the distributions of <random> are not.
 class Random {
@@ -24,6 +28,12 @@ public:
 private:
     uint64_t state_;
 };
+
+// What all of this is made of. join_grid() joins (nu + 1) x (nv + 1) vertices that start at `first`, u running fastest, into
+// triangles facing du x dv; triangles of (nearly) no area, as at poles, are left out.
+void vertex(Primitive& out, glm::vec3 position, glm::vec3 normal, glm::vec2 texcoord);
+void triangle(Primitive& out, uint32_t a, uint32_t b, uint32_t c);
+void join_grid(Primitive& out, uint32_t first, int nu, int nv);
 
 // The surface point(u, v) over the unit square in nu x nv cells; the front is where d/du x d/dv points. Normals by
 // central differences; texture coordinates are (u, v) * uv_scale. Triangles that collapse are left out.
@@ -42,6 +52,9 @@ void box(Primitive& out, glm::vec3 lo, glm::vec3 hi, float cell, unsigned faces 
 // turns by more than 0.6 radians the edge is hard, elsewhere the surface is smooth.
 using Profile = std::vector<glm::vec2>;
 
+// The unit tangents at both ends of the profile's segment `segment`, shared with its neighbours where the edge is smooth.
+std::array<glm::vec2, 2> profile_tangents(const Profile& profile, size_t segment);
+
 // Moves the profile through space: `place(p, t)` for t in [0, 1] in nt steps, hand chosen so that the front is
 // d/dprofile x d/dt. lathe(), ring() and arch_moulding() are this with their own place().
 using Placement = std::function<glm::vec3(glm::vec2 p, float t)>;
@@ -50,6 +63,11 @@ void sweep(Primitive& out, const Profile& profile, int nt, const Placement& plac
 // Profile (radius, height) turned about +Y. `radius_factor`, if given, varies the radius with angle and height: flutes.
 using RadiusFactor = std::function<float(float angle, float height)>;
 void lathe(Primitive& out, const Profile& profile, int sides, const RadiusFactor& radius_factor = {});
+// A part of that, between two angles, about the vertical through `axis` (x, z): for what is half buried in something else.
+void lathe(Primitive& out, const Profile& profile, int sides, glm::vec2 axis, float from, float to, const RadiusFactor& radius_factor = {});
+
+// Appends an arc around `centre` from angle `from` to `to`, in n segments, to a profile: rounds, hollows and bulges.
+void arc(Profile& profile, glm::vec2 centre, float radius, float from, float to, int n);
 
 // Profile (projection towards the centre, height) around the rectangle |x| = half.x, |z| = half.y, mitred at its
 // corners: mouldings, slabs and walls around a court.
@@ -65,6 +83,13 @@ void arch_panel(Primitive& out, float width, float height, float radius, float t
 
 // A groin vault over |x| <= half.x, |z| <= half.y, springing at y = 0 and rising to `rise`, seen from below.
 void groin_vault(Primitive& out, glm::vec2 half, float rise, int cells);
+
+// A drape that hangs from (0, 0, 0) downwards, `width` wide at the top towards +x, gathered to `tied` of its width at
+// 60 % of its height (1: hangs straight). Folds run vertically.
+struct Drape {
+    float width, height, tied, folds;
+};
+void drape(Primitive& cloth, const Drape& shape, Random& random, float detail);
 
 void append(Primitive& out, const Primitive& in, const glm::mat4& transform);
 
