@@ -21,17 +21,18 @@ TEST_F(Gltf, ColorsOfEveryType) {
         return read().meshes[0].primitives[0].colors.at(1);
     };
     // The second of four; 51 / 255 = 13107 / 65535 = 0.2.
-    const std::vector<float> rgb = {9, 9, 9, .25f, .5f, 2, 9, 9, 9, 9, 9, 9};
-    expect_near4(color(accessor(view(rgb), f32, "VEC3", 4)), {.25f, .5f, 2, 1});
-    const std::vector<float> rgba = {9, 9, 9, 9, .25f, .5f, .75f, .125f, 9, 9, 9, 9, 9, 9, 9, 9};
+    const std::vector<float> rgb = {1, 1, 1, .25f, .5f, .75f, 1, 1, 1, 1, 1, 1};
+    expect_near4(color(accessor(view(rgb), f32, "VEC3", 4)), {.25f, .5f, .75f, 1});
+    const std::vector<float> rgba = {1, 1, 1, 1, .25f, .5f, .75f, .125f, 1, 1, 1, 1, 1, 1, 1, 1};
     expect_near4(color(accessor(view(rgba), f32, "VEC4", 4)), {.25f, .5f, .75f, .125f});
     const std::vector<uint8_t> bytes = {9, 9, 9, 9, 255, 51, 0, 102, 9, 9, 9, 9, 9, 9, 9, 9};
     expect_near4(color(accessor(view(bytes), u8, "VEC4", 4, 0, true)), {1, .2f, 0, .4f});
     expect_near4(color(accessor(view(bytes, 4), u8, "VEC3", 4, 0, true)), {1, .2f, 0, 1});
-    expect_near4(color(accessor(view(bytes), u8, "VEC4", 4)), {1, .2f, 0, .4f});  // not marked as normalised
     const std::vector<uint16_t> shorts = {9, 9, 9, 9, 65535, 13107, 0, 26214, 9, 9, 9, 9, 9, 9, 9, 9};
     expect_near4(color(accessor(view(shorts), u16, "VEC4", 4, 0, true)), {1, .2f, 0, .4f});
     expect_near4(color(accessor(view(shorts, 8), u16, "VEC3", 4, 0, true)), {1, .2f, 0, 1});
+    valid = false;
+    expect_near4(color(accessor(view(bytes), u8, "VEC4", 4)), {1, .2f, 0, .4f});  // not marked as normalised
     primitive()["attributes"]["COLOR_0"] = accessor(view(rgb), f32, "VEC2", 4);
     expect_refused({"primitive 0 COLOR_0", "2 components"});
     primitive()["attributes"]["COLOR_0"] = accessor(view(rgb), f32, "VEC3", 3);
@@ -42,6 +43,7 @@ TEST_F(Gltf, SecondSetAndTangents) {
     square();
     std::vector<float> normals, tangents;
     for (int i = 0; i < 4; ++i) normals.insert(normals.end(), {0, 0, 1}), tangents.insert(tangents.end(), {1, 0, 0, i % 2 ? 1.0f : -1.0f});
+    primitive()["attributes"]["TEXCOORD_0"] = accessor(view(std::vector<float>(8, 0.5f)), f32, "VEC2", 4);
     primitive()["attributes"]["TEXCOORD_1"] = accessor(view(std::vector<uint8_t>{0, 0, 0, 0, 255, 51, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, 4), u8, "VEC2", 4, 0, true);
     primitive()["attributes"]["TANGENT"] = accessor(view(tangents), f32, "VEC4", 4);
     EXPECT_TRUE(read().meshes[0].primitives[0].tangents.empty());  // tangents mean nothing without normals
@@ -50,7 +52,7 @@ TEST_F(Gltf, SecondSetAndTangents) {
     EXPECT_EQ(p.texcoords1.at(1), vec2(1, .2f));
     EXPECT_EQ(p.tangents.at(1), vec4(1, 0, 0, 1));
     EXPECT_EQ(p.tangents.at(2), vec4(1, 0, 0, -1));
-    EXPECT_TRUE(p.texcoords.empty());
+    EXPECT_EQ(p.texcoords.at(1), vec2(0.5f));
 }
 
 TEST_F(Gltf, QuantisedTangentsAndTexcoords) {
@@ -94,7 +96,7 @@ TEST_F(Gltf, SparseWithoutABufferView) {
 
 TEST_F(Gltf, SparseNormalisedIntegers) {
     square();
-    const int base = view(std::vector<uint8_t>{255, 0, 255, 0, 255, 0, 255, 0});
+    const int base = view(std::vector<uint8_t>{255, 0, 9, 9, 255, 0, 9, 9, 255, 0, 9, 9, 255, 0, 9, 9}, 4);
     primitive()["attributes"]["TEXCOORD_0"] = accessor(base, u8, "VEC2", 4, 0, true);
     doc["accessors"].back()["sparse"] = {{"count", 1},
                                          {"indices", {{"bufferView", view(std::vector<uint16_t>{2})}, {"componentType", u16}}},
@@ -143,6 +145,7 @@ TEST_F(Gltf, PrimitiveRestartIsRefused) {
 
 // Every attribute follows where unused vertices are left out.
 TEST_F(Gltf, UnusedVerticesLeaveWithAllTheirAttributes) {
+    valid = false;  // normals are numbers here, not directions
     std::vector<float> three, two, four;
     for (int i = 0; i < 50; ++i) {
         const float x = float(i);

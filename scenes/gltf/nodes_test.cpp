@@ -67,6 +67,7 @@ TEST_F(Gltf, WhatNoInstanceShowsIsNotRead) {
     doc["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
     doc["nodes"] = {{{"mesh", 0}}, {{"mesh", 1}}};
     doc["scenes"] = {{{"nodes", {0}}}, {{"nodes", {1}}}};
+    valid = false;  // a picture is absent
     const Scene scene = read();
     EXPECT_EQ(scene.meshes.at(0).primitives.size(), 1u);
     EXPECT_TRUE(scene.meshes.at(1).primitives.empty());

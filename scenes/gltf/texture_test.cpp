@@ -16,6 +16,7 @@ protected:
     void SetUp() override {
         Gltf::SetUp();
         square();
+        add_texcoords();
         primitive()["material"] = 0;
         doc["images"] = {{{"uri", png}}};
         doc["textures"] = {{{"source", 0}}};
@@ -84,6 +85,7 @@ TEST_F(GltfTextures, SetsOfCoordinates) {
     EXPECT_EQ(read_material().base_color_texture.set, 0u);
     EXPECT_TRUE(read().warnings.empty());
     base_color()["extensions"]["KHR_texture_transform"] = {{"texCoord", 3}};
+    valid = false;  // there is no such set
     const Scene scene = read();
     EXPECT_EQ(scene.materials[0].base_color_texture.set, 0u);
     ASSERT_EQ(scene.warnings.size(), 1u);
@@ -138,6 +140,7 @@ TEST_F(GltfTextures, Unlit) {
 
 TEST_F(GltfTextures, OtherFormatsFallBackOrAreRefusedByName) {
     for (const char* format : {"KHR_texture_basisu", "EXT_texture_webp"}) {
+        valid = false;  // nobody looks into the picture of an unknown format, but the validator
         doc["extensionsUsed"] = {format};
         doc["images"] = {{{"uri", png}}, {{"uri", "picture.unheard"}}};
         doc["textures"] = {{{"source", 0}, {"extensions", {{format, {{"source", 1}}}}}}};
