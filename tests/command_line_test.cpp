@@ -103,7 +103,7 @@ TEST_F(command_line, help_names_every_option) {
                     "--aov",     "--device",   "--repeat", "--float", "--quiet",   "1:1",       "builtin:cornell", "W/sr"}},
         {"compare", {"REF", "TEST", "--json", "--fail-above", "--fail-below", "--layer", "--diff", "--tolerance"}},
         {"bench", {"--json"}},
-        {"convert", {"IN", "OUT", "--unit", "--up", "--crease", "--colors", "--seed", "--quiet", ".gltf", ".glb", ".obj", ".ply.gz", ".stl", ".fbx", ".dae", "builtin:NAME"}},
+        {"convert", {"IN", "OUT", "--unit", "--up", "--crease", "--colors", "--seed", "--quiet", ".gltf", ".glb", ".obj", ".ply.gz", ".stl", ".fbx", ".dae", ".json", "builtin:NAME"}},
         {"info", {"--json", "--device"}}};
     for (const auto& [command, names] : options) {
         succeed(command.empty() ? Arguments{"-h"} : Arguments{command, "-h"});
@@ -330,6 +330,10 @@ TEST_F(command_line, convert) {
     EXPECT_TRUE(bytes_of(folder / "b.glb") == bytes_of(folder / "c.glb"));
     EXPECT_EQ(folder.names(), (std::vector<std::string>{"a.glb", "b.glb", "c.glb"}));
 
+    put(folder / "room.json", R"({"recipe": 1, "parts": [{"file": "a.glb", "places": [{}, {"at": [9, 0, 0]}]}], "boxes": [{"size": [1, 1, 1]}]})");
+    succeed({"convert", folder / "room.json", folder / "e.glb"});
+    EXPECT_TRUE(contains(last.out, "(3564 with instances)")) << last.out;
+
     put(folder / "a.obj", "mtllib gone.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     const Outcome o = myriad_program({"convert", folder / "a.obj", folder / "d.glb"});
     EXPECT_EQ(o.status, 0) << o.err;
@@ -352,6 +356,8 @@ TEST_F(command_line, convert_refuses) {
     for (const char* unit : {"0", "-1", "nan", "mile", ""}) refuse(2, {"convert", "builtin:cornell", glb, "--unit", unit}, "mm, cm, m, in, ft");
     refuse(2, {"convert", "builtin:cornell", glb, "--up", "w"}, "x, y, z");
     refuse(2, {"convert", "builtin:cornell", glb, "--crease", "181"}, "--crease");
+    put(other / "bad.json", R"({"recipe": 1, "parts": [{"file": "none.obj"}]})");
+    refuse(2, {"convert", other / "bad.json", glb}, "parts[0]: there is no file \"none.obj\"");
     put(other / "bad.obj", "v 0 0 0\nf 1 2 3\n");
     refuse(2, {"convert", other / "bad.obj", glb}, "bad.obj: the file cannot be read");
     put(other / "empty.gltf", R"({"asset": {"version": "2.0"}})");

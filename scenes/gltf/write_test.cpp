@@ -122,7 +122,7 @@ TEST(GltfWriter, TexturesComeBackToTheByte) {
     EXPECT_EQ(document(glb_bytes(scene, {.quick = true}))["images"], doc["images"]);
 }
 
-// The loader reads these back since it knows them; the document is checked here besides, for both could agree on an error.
+// The document is checked besides what comes back, for writer and loader could agree on an error.
 TEST(GltfWriter, Extensions) {
     Scene scene = triangle();
     scene.textures.push_back({.width = 1, .height = 1, .rgba = {1, 2, 3, 4}});
@@ -153,6 +153,11 @@ TEST(GltfWriter, Extensions) {
     EXPECT_NEAR(normal["extensions"]["KHR_texture_transform"]["scale"][1].get<double>(), 3, 1e-6);
     const json& attributes = doc["meshes"][0]["primitives"][0]["attributes"];
     for (const char* name : {"POSITION", "TEXCOORD_0", "TEXCOORD_1", "COLOR_0"}) EXPECT_TRUE(attributes.contains(name)) << name;
+    // Set 0 was zeros and is there now; for the rest the scene comes back.
+    scene.meshes[0].primitives[0].texcoords.assign(3, vec2(0));
+    EXPECT_TRUE(round_trip(scene).materials[0].unlit);
+    m.unlit = false;  // of an unlit material the loader takes the base colour only
+    expect_round_trip(scene);
     m.alpha = Material::Alpha::blend;
     EXPECT_EQ(document(glb_bytes(scene))["materials"][0]["alphaMode"], "BLEND");
 }

@@ -12,6 +12,9 @@ namespace myriad::scenes::importing {
 
 using Bytes = std::vector<uint8_t>;
 
+// Where a format sets no limit of its own: a file that is larger, or expands to more, is refused.
+inline constexpr uint64_t max_file_bytes = 2ull << 30;
+
 // The whole file; InputError if it cannot be read or is larger than `limit` bytes.
 Bytes read_file(const std::string& path, uint64_t limit);
 

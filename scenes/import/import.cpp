@@ -10,6 +10,8 @@
 #include "scenes/import/assimp/read.hpp"
 #include "scenes/import/embree.hpp"
 #include "scenes/import/ibsp.hpp"
+#include "scenes/import/ply.hpp"
+#include "scenes/import/recipe.hpp"
 #include "scenes/import/tidy.hpp"
 
 namespace myriad::scenes {
@@ -44,10 +46,11 @@ const std::vector<Format>& formats() {
     static const std::vector<Format> list = {
         {{".gltf", ".glb"}, "glTF 2.0, with the files that it names", read_gltf},
         {{".obj", ".obj.gz"}, "Wavefront OBJ with its MTL; metres, +Y up", importing::read_assimp},
-        {{".ply", ".ply.gz"}, "PLY, vertex colours too; metres, +Y up", importing::read_assimp},
+        {{".ply", ".ply.gz"}, "PLY, vertex colours too; metres, +Y up", importing::import_ply},
         {{".stl", ".stl.gz"}, "STL; millimetres, +Z up", importing::read_assimp},
         {{".fbx"}, "Autodesk FBX; the file says its unit and axis", importing::read_assimp},
         {{".dae"}, "Collada; the file says its unit and axis", importing::read_assimp},
+        {{".json"}, "a recipe, which composes a scene from parts: scenes/import/RECIPES.md", importing::import_recipe},
         {{".bsp"}, "maps of Quake III and OpenArena (IBSP 46)", importing::import_ibsp},
         {{".xml"}, "strands of Embree's scenes, with their .bin or .bin.gz beside", importing::import_embree},
     };

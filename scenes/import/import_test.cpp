@@ -2,6 +2,8 @@
 #include "scenes/import/import.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -241,20 +243,63 @@ TEST_F(Import, Ply) {
     EXPECT_EQ(p.normals[0], vec3(0, 0, 1));
 }
 
-TEST_F(Import, PlyBinary) {
-    std::string text = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n" + ply_faces;
-    for (float f : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f}) text.append(reinterpret_cast<char*>(&f), 4);
-    text += '\3';
-    for (int i : {0, 1, 2}) text.append(reinterpret_cast<char*>(&i), 4);
-    EXPECT_EQ(triangles(read("b.ply", text)), 1u);
+// A triangle and a strip of two, in each encoding, with properties and elements that nobody asked for.
+std::string binary_ply(bool big) {
+    std::string text = std::string("ply\r\nformat binary_") + (big ? "big" : "little") + "_endian 1.0\nobj_info x\nelement vertex 4\nproperty double x\nproperty float y\n"
+                       "property short z\nproperty list uchar float spare\nelement edge 2\nproperty int a\nelement face 1\nproperty uchar flags\n"
+                       "property list int ushort vertex_index\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n";
+    const auto add = [&](auto value) {
+        auto raw = std::bit_cast<std::array<char, sizeof value>>(value);
+        if (big) std::ranges::reverse(raw);
+        text.append(raw.data(), raw.size());
+    };
+    for (const auto& [x, y, z] : {std::tuple(0.0, 0.f, short(0)), {1.0, 0.f, short(0)}, {1.0, 1.f, short(-5)}, {0.0, 1.f, short(0)}}) {
+        add(x), add(y), add(z), add(uint8_t(1)), add(7.f);
+    }
+    add(1), add(2);
+    add(uint8_t(9)), add(3), add(uint16_t(0)), add(uint16_t(1)), add(uint16_t(2));
+    add(6), add(0), add(1), add(2), add(3), add(-1), add(0);
+    return text;
+}
 
-    const std::string path = (folder / "b.PLY.gz").string();  // and compressed; case does not count
+TEST_F(Import, PlyBinary) {
+    for (const bool big : {false, true}) {
+        const Scene scene = read("b.ply", binary_ply(big), {.crease = 0.0f});
+        ASSERT_EQ(triangles(scene), 3u);
+        const Primitive& p = scene.meshes[0].primitives[0];
+        EXPECT_EQ(p.positions[2], vec3(1, 1, -5));
+        EXPECT_EQ(p.indices, (std::vector<uint32_t>{0, 1, 2, 0, 1, 2, 2, 1, 3}));  // the second of a strip is turned
+    }
+    const std::string path = (folder / "b.PLY.gz").string(), text = binary_ply(false);  // and compressed; case does not count
     gzFile file = gzopen(path.c_str(), "wb");
     gzwrite(file, text.data(), unsigned(text.size()));
     gzclose(file);
-    EXPECT_EQ(triangles(import_scene(path)), 1u);
+    EXPECT_EQ(triangles(import_scene(path)), 3u);
     std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
     EXPECT_NE(refused(path).find("gzip"), std::string::npos);
+}
+
+TEST_F(Import, PlyThatIsNone) {
+    const std::string rows = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+    const auto refuse = [&](const std::string& text) { return refused(put("r.ply", text)); };
+    EXPECT_NE(refuse("plyers\n").find("begin with"), std::string::npos);
+    EXPECT_NE(refuse("ply\nformat ascii 1.0\n").find("no end"), std::string::npos);
+    EXPECT_NE(refuse("ply\nend_header\n").find("no format"), std::string::npos);
+    EXPECT_NE(refuse("ply\nformat morse 1.0\nend_header\n").find("morse"), std::string::npos);
+    EXPECT_NE(refuse("ply\nformat ascii 1.0\nproperty float x\nend_header\n").find("makes no sense"), std::string::npos);
+    EXPECT_NE(refuse("ply\nformat ascii 1.0\nelement vertex -4\nend_header\n").find("makes no sense"), std::string::npos);
+    EXPECT_NE(refuse("ply\nformat ascii 1.0\nelement vertex 1\nproperty long x\nend_header\n").find("makes no sense"), std::string::npos);
+    EXPECT_NE(refuse("ply\nformat ascii 1.0\nelement vertex 1\nproperty list float int x\nend_header\n").find("makes no sense"), std::string::npos);
+    EXPECT_NE(refuse("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n").find("no x, y and z"), std::string::npos);
+    EXPECT_NE(refuse("ply\nformat ascii 1.0\nelement vertex 18446744073709551615\nproperty float x\nend_header\n1\n").find("announced"), std::string::npos);
+    EXPECT_NE(refuse(ply_head + ply_faces + rows + "3 0 1 4\n").find("only 4 vertices"), std::string::npos);
+    EXPECT_NE(refuse(ply_head + ply_faces + rows + "3 0 1 -1\n").find("corner -1"), std::string::npos);
+    EXPECT_NE(refuse(ply_head + ply_faces + rows + "3 0 1 0.5\n").find("corner 0.5"), std::string::npos);
+    EXPECT_NE(refuse(ply_head + ply_faces + rows + "300 0 1 2\n").find("announced"), std::string::npos);
+    EXPECT_NE(refuse(ply_head + ply_faces + rows + "3 0 1\n").find("end too early"), std::string::npos);
+    EXPECT_NE(refuse(ply_head + ply_faces + "0 0 zero\n").find("\"zero\" is not a number"), std::string::npos);
+    const Scene odd = read("o.ply", ply_head + ply_faces + "0 0 0\n+1 0 0\n1e0 1 nan\n0 1. 0\n4 0 1 2 3\n");
+    EXPECT_TRUE(says(odd, "not finite"));
 }
 
 std::string binary_stl(const std::vector<vec3>& corners, vec3 normal) {
@@ -387,6 +432,8 @@ TEST_F(Import, DamagedFiles) {
     put_png("wood.png", {10, 20, 30, 255, 40, 50, 60, 255});
     const std::vector<std::pair<std::string, std::string>> files = {
         {"d.obj", square_obj},
+        {"d.ply", ply_head + ply_faces + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n"},
+        {"e.ply", binary_ply(true)},
         {"d.stl", binary_stl({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, 0, 1})},
         {"d.dae", collada("<unit meter=\"0.01\"/>", "<up_axis>Z_UP</up_axis>")},
         {"d.fbx", fbx(1, 1)}};

@@ -14,9 +14,6 @@
 
 namespace myriad::scenes::importing {
 
-// A file that is larger is refused, and so is what a compressed one expands to beyond.
-inline constexpr uint64_t max_file_bytes = 2ull << 30;
-
 class SceneFiles : public Assimp::IOSystem {
 public:
     // `bytes` are the file's, decompressed where it was compressed; `name` is what assimp calls it.

@@ -9,7 +9,8 @@
 #include <assimp/mesh.h>
 
 #include "engine/error.hpp"
-#include "scenes/import/assimp/color.hpp"
+#include "scenes/gltf/limits.hpp"
+#include "scenes/import/color.hpp"
 #include "scenes/import/tidy.hpp"
 #include "scenes/import/triangulate.hpp"
 
@@ -159,7 +160,8 @@ private:
         out.outer_cone = std::clamp(in.mAngleOuterCone / 2, 1e-3f, 1.5707963f);
         out.inner_cone = std::clamp(in.mAngleInnerCone / 2, 0.0f, out.outer_cone);
         const float sum = glm::dot(out.position + out.direction + out.intensity, glm::vec3(1));
-        if (!std::isfinite(sum) || glm::any(glm::lessThan(out.intensity, glm::vec3(0))) || !(out.outer_cone > 0)) ++lights_;
+        const bool sane = glm::all(glm::greaterThanEqual(out.intensity, glm::vec3(0))) && glm::all(glm::lessThanEqual(out.intensity, glm::vec3(float(gltf::limits::light))));
+        if (!std::isfinite(sum) || !sane || !(out.outer_cone > 0)) ++lights_;
         else out_.lights.push_back(out);
     }
 

@@ -4,8 +4,9 @@
 #include <cmath>
 #include <cstring>
 
+#include "scenes/gltf/limits.hpp"
 #include "scenes/import/apart.hpp"
-#include "scenes/import/assimp/color.hpp"
+#include "scenes/import/color.hpp"
 #include "scenes/import/assimp/files.hpp"
 #include "scenes/import/bytes.hpp"
 #include "scenes/import/picture.hpp"
@@ -244,7 +245,7 @@ void Materials::add(const aiMaterial& material, bool has_colors) {
     float strength = 1;
     get(material, AI_MATKEY_COLOR_EMISSIVE, emissive);
     get(material, AI_MATKEY_EMISSIVE_INTENSITY, strength);
-    out.emissive = glm::min(color(emissive) * std::max(strength, 0.0f), glm::vec3(1e30f));
+    out.emissive = glm::min(color(emissive) * std::max(strength, 0.0f), glm::vec3(float(gltf::limits::light)));
     if (const Slot glow = slot(material, {aiTextureType_EMISSION_COLOR, aiTextureType_EMISSIVE})) {
         out.emissive_texture = use(glow);
         if (out.emissive == glm::vec3(0)) out.emissive = glm::vec3(1);

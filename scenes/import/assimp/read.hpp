@@ -1,4 +1,4 @@
-// Wavefront OBJ, PLY, STL, FBX and Collada through assimp, which reads them in a process of its own (apart.hpp).
+// Wavefront OBJ, STL, FBX and Collada through assimp, which reads them in a process of its own (apart.hpp).
 #pragma once
 
 #include "scenes/import/import.hpp"
