@@ -300,6 +300,8 @@ TEST_F(InstancesTest, many_instances_equal_one_tree) {
 // Deep trees on both levels: of 1200 shrinking instances of 1200 shrinking triangles. Written out they would be 1.4 M triangles, so the
 // two traversals, whose stacks have nothing in common, are asked instead.
 TEST_F(InstancesTest, deep_trees_fit_the_stack) {
+    // 1200 nested instances of 1200 nested triangles: some of these rays take more than 49,000 steps, and say so (Bvh's status).
+    if (device.loop_limit() != ~0u) GTEST_SKIP() << "this driver ends loops after " << device.loop_limit() << " iterations; the scene needs more";
     Shared s;
     Shared::Range mesh = s.begin();
     const auto near_corner = [&](float size) { return size * (vec3(1) + 0.3f * in_cube()); };
