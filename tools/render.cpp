@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "passes/geometry/unshaded.hpp"
 #include "scenes/scene.hpp"
 #include "tools/commands.hpp"
 #include "tools/exposure.hpp"
@@ -30,6 +31,7 @@ Loaded load(const RenderOptions& options, Progress& progress) {
     scenes::apply_sky(loaded.scene, options.sky);
     loaded.triangles = scenes::flatten(loaded.scene, options.instances);
     loaded.camera = scenes::pick_camera(loaded.scene, loaded.triangles, options.camera);
+    if (const std::string unshaded = passes::unshaded(loaded.scene); !unshaded.empty()) loaded.scene.warnings.push_back(unshaded);
     progress.clear();
     for (const std::string& warning : loaded.scene.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
     return loaded;
