@@ -173,9 +173,10 @@ private:
     }
 
     double component(int type, size_t at) const {
-        const uint8_t* from = bin.data() + at;
-        const auto as = [&](auto value) { return std::memcpy(&value, from, sizeof value), double(value); };
-        if (at + 4 > bin.size() + 3) throw std::out_of_range("bin");
+        const auto as = [&](auto value) {
+            if (at > bin.size() || bin.size() - at < sizeof value) throw std::out_of_range("bin");
+            return std::memcpy(&value, bin.data() + at, sizeof value), double(value);
+        };
         return type == i8 ? as(int8_t()) : type == u8 ? as(uint8_t()) : type == i16 ? as(int16_t()) : type == u16 ? as(uint16_t()) : type == u32 ? as(uint32_t()) : as(float());
     }
 
