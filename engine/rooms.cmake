@@ -1,9 +1,10 @@
-# myriad_room(NAME [LINK targets…]): makes one library of a room, by convention instead of by list, so that a new kernel
-# is a new folder and nothing else:
+# myriad_room(NAME [LINK targets…] [EXCEPT regex]): makes one library of a room, by convention instead of by list, so that
+# a new kernel is a new folder and nothing else:
 #   *.cpp            the room's library, myriad_NAME
 #   *_ref.cpp        plain CPU twins, in myriad_NAME_ref: linked by tests and benches, never by the product
 #   *_test.cpp       the room's tests, myriad_NAME_tests (Google Test)
 #   FOLDER/X.comp    a kernel, compiled, checked and embedded under the name "FOLDER/X"
+# Sources whose paths match EXCEPT's regular expression are left to the caller.
 enable_language(ASM)
 include(GoogleTest)
 
@@ -59,7 +60,7 @@ ${rows}};
 endfunction()
 
 function(myriad_room room)
-  cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
+  cmake_parse_arguments(ARG "" "EXCEPT" "LINK" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
   set(refs ${sources})
   set(tests ${sources})
@@ -67,6 +68,9 @@ function(myriad_room room)
   list(FILTER tests INCLUDE REGEX "_test\\.cpp$")
   list(FILTER sources EXCLUDE REGEX "_(ref|test)\\.cpp$")
   list(FILTER sources EXCLUDE REGEX "/main\\.cpp$")
+  if(ARG_EXCEPT)
+    list(FILTER sources EXCLUDE REGEX "${ARG_EXCEPT}")
+  endif()
   add_library(myriad_${room} STATIC ${sources})
   target_link_libraries(myriad_${room} PUBLIC ${ARG_LINK})
   file(GLOB_RECURSE kernels CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.comp)
