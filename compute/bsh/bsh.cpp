@@ -5,6 +5,7 @@
 #include "compute/bsh/bsh_order.hpp"
 #include "compute/kernels.hpp"
 #include "compute/surface_sampling/surface_sampling.hpp"
+#include "engine/parallel.hpp"
 #include "engine/transfer.hpp"
 
 namespace myriad::compute {
@@ -36,11 +37,13 @@ Bsh::Bsh(engine::Device& device, const WorldTriangles& world, uint32_t log2_samp
 
     const auto sampled = Clock::now();
     std::vector<glm::vec3> points(sampling.samples.size());
-    for (size_t i = 0; i < points.size(); ++i) {
-        const SurfaceSample& s = sampling.samples[i];
-        const Corners c = world.corners(s.triangle);
-        points[i] = bsh_position(c.p0, c.p1, c.p2, s.u, s.v);
-    }
+    engine::parallel_pieces(points.size(), 1 << 14, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            const SurfaceSample& s = sampling.samples[i];
+            const Corners c = world.corners(s.triangle);
+            points[i] = bsh_position(c.p0, c.p1, c.p2, s.u, s.v);
+        }
+    });
     std::vector<SurfaceSample> leaves(points.size());
     const std::vector<uint32_t> order = bsh_order(points);
     for (size_t i = 0; i < leaves.size(); ++i) leaves[i] = sampling.samples[order[i]];

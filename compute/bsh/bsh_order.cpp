@@ -6,8 +6,13 @@
 #include <cstring>
 #include <thread>
 
+#include "compute/common/radix_sort.hpp"
+#include "engine/parallel.hpp"
+
 namespace myriad::compute {
 namespace {
+
+constexpr size_t grain = 1 << 14;  // points that a thread takes at a time
 
 struct Point {
     glm::vec3 position;
@@ -70,12 +75,16 @@ uint32_t sortable(float v) {
     return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
 }
 
-std::vector<Point> sorted(std::span<const glm::vec3> points, int axis) {
+std::vector<Point> sorted(std::span<const glm::vec3> points, int axis, uint32_t threads) {
     std::vector<uint64_t> keys(points.size());
-    for (size_t i = 0; i < points.size(); ++i) keys[i] = uint64_t(sortable(points[i][axis])) << 32 | i;
-    std::sort(keys.begin(), keys.end());
     std::vector<Point> order(points.size());
-    for (size_t i = 0; i < points.size(); ++i) order[i] = {points[uint32_t(keys[i])], uint32_t(keys[i])};
+    engine::parallel_pieces(points.size(), grain, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) keys[i] = uint64_t(sortable(points[i][axis])) << 32 | i;
+    }, threads);
+    radix_sort(keys, [](uint64_t key) { return key; }, 32, 64, threads);  // stable: equals stay in the order of their indices
+    engine::parallel_pieces(points.size(), grain, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) order[i] = {points[uint32_t(keys[i])], uint32_t(keys[i])};
+    }, threads);
     return order;
 }
 
@@ -84,18 +93,11 @@ std::vector<Point> sorted(std::span<const glm::vec3> points, int axis) {
 std::vector<uint32_t> bsh_order(std::span<const glm::vec3> points, uint32_t threads) {
     if (points.empty()) return {};
     assert(std::has_single_bit(points.size()) && points.size() <= uint64_t(1) << 31);
-    if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
+    if (threads == 0) threads = engine::host_threads();
     if (points.size() < 4096) threads = 1;
 
     Splitter splitter;
-    {
-        auto sort = [&](int axis) { splitter.order[axis] = sorted(points, axis); };
-        std::vector<std::thread> workers;
-        for (int axis = 1; axis < 3 && threads > 1; ++axis) workers.emplace_back(sort, axis);
-        for (int axis = 0; axis < 3; ++axis)
-            if (axis == 0 || threads == 1) sort(axis);
-        for (std::thread& worker : workers) worker.join();
-    }
+    for (int axis = 0; axis < 3; ++axis) splitter.order[axis] = sorted(points, axis, threads);
     splitter.spare.resize(points.size());
     splitter.in_left.resize(points.size());
     splitter.split(0, points.size(), threads);

@@ -33,13 +33,23 @@ struct WorldTriangles {
         const Instance& i = instance(id);
         return instance_corners(i, stored(i.first_triangle + (id - i.first_id)));
     }
-    // visit(id, index as stored, corners) for all triangles, in the order of ids.
+    // visit(id, index as stored, corners) for the triangles [begin, end), in the order of ids.
     template <class Visit>
-    void for_each(Visit visit) const {
-        for (uint32_t t = 0; t < triangles.size() && !shared(); ++t) visit(t, t, stored(t));
-        for (const Instance& i : instances)
-            for (uint32_t t = 0; t < i.count; ++t) visit(i.first_id + t, i.first_triangle + t, instance_corners(i, stored(i.first_triangle + t)));
+    void for_each(uint32_t begin, uint32_t end, Visit visit) const {
+        if (!shared()) {
+            for (uint32_t t = begin; t < end; ++t) visit(t, t, stored(t));
+            return;
+        }
+        for (uint32_t t = begin; t < end;) {
+            const Instance& i = instance(t);
+            for (; t < std::min(end, i.first_id + i.count); ++t) {
+                const uint32_t index = i.first_triangle + (t - i.first_id);
+                visit(t, index, instance_corners(i, stored(index)));
+            }
+        }
     }
+    template <class Visit>
+    void for_each(Visit visit) const { for_each(0, count(), visit); }
     // What kernels that read these triangles are specialised by.
     engine::Constants constants() const { return {{instanced_constant, shared()}}; }
 };

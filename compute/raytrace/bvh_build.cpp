@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <map>
 #include <memory>
@@ -12,10 +13,14 @@
 
 #include <embree3/rtcore.h>
 
+#include "compute/common/radix_sort.hpp"
 #include "engine/error.hpp"
+#include "engine/parallel.hpp"
 
 namespace myriad::compute {
 namespace {
+
+constexpr size_t grain = 1 << 14;  // triangles that a thread takes at a time
 
 // Boxes are enlarged by 2^-21 of the triangle's extent and of its coordinates (8 u each): the triangle test rounds its
 // vertices by up to 3 u of their distances from the ray's origin, so that it accepts rays that pass the exact box by as
@@ -88,29 +93,57 @@ void split(const RTCBuildPrimitive* primitive, unsigned axis, float position, RT
 
 // Triangles worth a test, in the order of their indices, among stored ones [first, first + count), which get ids from first_id on.
 // Of a shared mesh, needles without area stay: rounding gives them one in the world, now and then.
-void append_hittable(const WorldTriangles& world, uint first, uint count, uint first_id, bool shared, std::vector<BvhTriangle>& kept) {
-    auto finite = [](vec3 p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); };
-    for (uint i = 0; i < count; ++i) {
-        const auto [p0, p1, p2] = world.stored(first + i);
-        if (!finite(p0) || !finite(p1) || !finite(p2)) continue;
-        const glm::dvec3 area = cross(glm::dvec3(p1) - glm::dvec3(p0), glm::dvec3(p2) - glm::dvec3(p0));
-        if (shared ? p0 != p1 && p1 != p2 && p2 != p0 : area != glm::dvec3(0)) kept.push_back({p0, p1, p2, first_id + i});
-    }
+void append_hittable(const WorldTriangles& world, uint first, uint count, uint first_id, bool shared, uint32_t threads,
+                     std::vector<BvhTriangle>& kept) {
+    size_t n = kept.size();
+    const size_t before = n;
+    kept.resize(before + count);
+    std::vector<uint8_t> keep(count);
+    engine::parallel_pieces(count, grain, [&](size_t begin, size_t end) {
+        auto finite = [](vec3 p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); };
+        for (size_t i = begin; i < end; ++i) {
+            const auto [p0, p1, p2] = world.stored(first + uint(i));
+            const glm::dvec3 area = cross(glm::dvec3(p1) - glm::dvec3(p0), glm::dvec3(p2) - glm::dvec3(p0));
+            keep[i] = finite(p0) && finite(p1) && finite(p2) && (shared ? p0 != p1 && p1 != p2 && p2 != p0 : area != glm::dvec3(0));
+            kept[before + i] = {p0, p1, p2, first_id + uint(i)};
+        }
+    }, threads);
+    for (size_t i = 0; i < count; ++i)
+        if (keep[i]) kept[n++] = kept[before + i];
+    kept.resize(n);
 }
 
-void drop_copies(std::vector<BvhTriangle>& kept) {
-    // Copies of a triangle can only tie with it; a heap of them in one place would be a tree that prunes nothing.
-    using Key = std::array<float, 9>;
-    auto key = [&](uint i) {
-        std::array<vec3, 3> p{kept[i].p0, kept[i].p1, kept[i].p2};
-        std::sort(p.begin(), p.end(), [](vec3 a, vec3 b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); });
-        return Key{p[0].x, p[0].y, p[0].z, p[1].x, p[1].y, p[1].z, p[2].x, p[2].y, p[2].z};
-    };
-    std::vector<std::pair<Key, uint>> order(kept.size());
-    for (uint i = 0; i < order.size(); ++i) order[i] = {key(i), i};
-    std::sort(order.begin(), order.end());
-    std::vector<bool> copy(kept.size());
-    for (size_t i = 1; i < order.size(); ++i) copy[order[i].second] = order[i].first == order[i - 1].first;
+// The same for triangles of the same three vertices, in whatever order; -0 is 0.
+using Key = std::array<float, 9>;
+Key key(const BvhTriangle& t) {
+    std::array<vec3, 3> p{t.p0 + 0.0f, t.p1 + 0.0f, t.p2 + 0.0f};
+    std::sort(p.begin(), p.end(), [](vec3 a, vec3 b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); });
+    return {p[0].x, p[0].y, p[0].z, p[1].x, p[1].y, p[1].z, p[2].x, p[2].y, p[2].z};
+}
+uint32_t hash(const Key& key) {
+    uint64_t h = 0;
+    for (const float v : key) h = (h ^ std::bit_cast<uint32_t>(v)) * 0x9e3779b97f4a7c15u, h ^= h >> 32;
+    return uint32_t(h * 0xd6e8feb86659fd93u >> 32);
+}
+
+// Copies of a triangle can only tie with it; a heap of them in one place would be a tree that prunes nothing. The first stays.
+// Copies have one hash, so only what shares a hash is compared.
+void drop_copies(std::vector<BvhTriangle>& kept, uint32_t threads) {
+    std::vector<uint64_t> hashed(kept.size());
+    engine::parallel_pieces(hashed.size(), grain, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) hashed[i] = uint64_t(hash(key(kept[i]))) << 32 | i;
+    }, threads);
+    radix_sort(hashed, [](uint64_t h) { return h; }, 32, 64, threads);
+    std::vector<uint8_t> copy(kept.size());
+    std::vector<std::pair<Key, uint>> alike;
+    for (size_t run = 0, next; run < hashed.size(); run = next) {
+        for (next = run + 1; next < hashed.size() && hashed[next] >> 32 == hashed[run] >> 32;) ++next;
+        if (next - run == 1) continue;
+        alike.clear();
+        for (size_t i = run; i < next; ++i) alike.emplace_back(key(kept[uint(hashed[i])]), uint(hashed[i]));
+        std::sort(alike.begin(), alike.end());
+        for (size_t i = 1; i < alike.size(); ++i) copy[alike[i].second] = alike[i].first == alike[i - 1].first;
+    }
     size_t n = 0;
     for (size_t i = 0; i < kept.size(); ++i)
         if (!copy[i]) kept[n++] = kept[i];
@@ -194,11 +227,12 @@ struct Layout {
 BvhBox united(const BvhBox& a, const BvhBox& b) { return {min(a.lo, b.lo), max(a.hi, b.hi)}; }
 
 // Lays the tree that Embree makes of these boxes from node `index` on. Returns its levels.
-uint lay_tree(Layout layout, std::span<const BvhBox> boxes, uint index, BvhQuality quality, uint max_depth) {
+uint lay_tree(Layout layout, std::span<const BvhBox> boxes, uint index, BvhQuality quality, uint max_depth, uint32_t threads) {
     std::vector<RTCBuildPrimitive> primitives(boxes.size());
     for (uint i = 0; i < boxes.size(); ++i)
         primitives[i] = {boxes[i].lo.x, boxes[i].lo.y, boxes[i].lo.z, 0, boxes[i].hi.x, boxes[i].hi.y, boxes[i].hi.z, i};
-    const std::unique_ptr<RTCDeviceTy, void (*)(RTCDevice)> device(rtcNewDevice(nullptr), rtcReleaseDevice);
+    const std::string config = "threads=" + std::to_string(threads ? threads : engine::host_threads());
+    const std::unique_ptr<RTCDeviceTy, void (*)(RTCDevice)> device(rtcNewDevice(config.c_str()), rtcReleaseDevice);
     const std::unique_ptr<RTCBVHTy, void (*)(RTCBVH)> bvh(rtcNewBVH(device.get()), rtcReleaseBVH);
     RTCBuildArguments arguments = rtcDefaultBuildArguments();
     const bool best = quality == BvhQuality::best;
@@ -236,11 +270,13 @@ uint lay_tree(Layout layout, std::span<const BvhBox> boxes, uint index, BvhQuali
 }
 
 // Appends a tree over triangles. Returns its levels; nodes[index] is its root, which is there already.
-uint append_tree(std::span<const BvhTriangle> triangles, uint index, BvhQuality quality, uint max_depth, BvhData& out) {
+uint append_tree(std::span<const BvhTriangle> triangles, uint index, BvhQuality quality, uint max_depth, uint32_t threads, BvhData& out) {
     if (triangles.empty()) return 1;
     std::vector<BvhBox> boxes(triangles.size());
-    for (size_t i = 0; i < boxes.size(); ++i) boxes[i] = bvh_box(triangles[i]);
-    return lay_tree({triangles, {}, out}, boxes, index, quality, max_depth);
+    engine::parallel_pieces(boxes.size(), grain, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) boxes[i] = bvh_box(triangles[i]);
+    }, threads);
+    return lay_tree({triangles, {}, out}, boxes, index, quality, max_depth, threads);
 }
 
 // A mesh's tree, and what its instances' nodes and boxes are made from.
@@ -250,10 +286,10 @@ struct MeshTree {
     vec3 most{0};                 // the largest magnitude of a coordinate, by axis
 };
 
-MeshTree append_mesh(std::span<const BvhTriangle> triangles, BvhQuality quality, BvhData& out) {
+MeshTree append_mesh(std::span<const BvhTriangle> triangles, BvhQuality quality, uint32_t threads, BvhData& out) {
     MeshTree mesh{.root = uint(out.nodes.size()), .first = out.triangles.size()};
     out.nodes.push_back({});
-    mesh.depth = append_tree(triangles, mesh.root, quality, bvh_max_mesh_depth, out);
+    mesh.depth = append_tree(triangles, mesh.root, quality, bvh_max_mesh_depth, threads, out);
     mesh.count = out.triangles.size() - mesh.first;
     for (const BvhTriangle& t : triangles) mesh.most = max(mesh.most, max(abs(t.p0), max(abs(t.p1), abs(t.p2))));
     return mesh;
@@ -288,7 +324,7 @@ BvhBox instance_box(std::span<const BvhTriangle> triangles, const Instance& i) {
 }
 
 // Trees of meshes, and one over instances. Everything that is stored in world space is one mesh.
-BvhData build_levels(const WorldTriangles& world, BvhQuality quality) {
+BvhData build_levels(const WorldTriangles& world, BvhQuality quality, uint32_t threads) {
     BvhData out;
     out.nodes.push_back({});
     std::map<uint, MeshTree> meshes;  // by their first stored triangle
@@ -303,7 +339,7 @@ BvhData build_levels(const WorldTriangles& world, BvhQuality quality) {
     };
     for (const Instance& i : world.instances) {
         if ((i.flags & instance_in_world) != 0) {
-            append_hittable(world, i.first_triangle, i.count, i.first_id, false, in_world);
+            append_hittable(world, i.first_triangle, i.count, i.first_id, false, threads, in_world);
             out.dropped += i.count;
             continue;
         }
@@ -312,27 +348,27 @@ BvhData build_levels(const WorldTriangles& world, BvhQuality quality) {
         const auto [mesh, is_new] = meshes.try_emplace(i.first_triangle);
         if (is_new) {
             triangles.clear();
-            append_hittable(world, i.first_triangle, i.count, 0, true, triangles);
-            drop_copies(triangles);
+            append_hittable(world, i.first_triangle, i.count, 0, true, threads, triangles);
+            drop_copies(triangles, threads);
             out.dropped += i.count - uint(triangles.size());
-            mesh->second = append_mesh(triangles, quality, out);
+            mesh->second = append_mesh(triangles, quality, threads, out);
         }
         use(mesh->second, i);
     }
-    drop_copies(in_world);
+    drop_copies(in_world, threads);
     out.dropped -= uint(in_world.size());
     Instance all{};
     all.flags = instance_in_world;
-    use(append_mesh(in_world, quality, out), all);
+    use(append_mesh(in_world, quality, threads, out), all);
 
     std::vector<BvhNode> nodes(out.instances.size());
     std::vector<BvhBox> boxes(nodes.size());
-    for (uint i = 0; i < nodes.size(); ++i) {
-        nodes[i] = instance_node(tree_of[i], out.instances[i], i);
+    engine::parallel_pieces(nodes.size(), 1, [&](size_t i, size_t) {
+        nodes[i] = instance_node(tree_of[i], out.instances[i], uint(i));
         boxes[i] = instance_box(std::span(out.triangles).subspan(tree_of[i].first, tree_of[i].count), out.instances[i]);
-    }
+    }, threads);
     out.depth = 1;
-    if (!nodes.empty()) out.depth = lay_tree({{}, nodes, out}, boxes, 0, BvhQuality::quick, bvh_max_top_depth) + mesh_depth;
+    if (!nodes.empty()) out.depth = lay_tree({{}, nodes, out}, boxes, 0, BvhQuality::quick, bvh_max_top_depth, threads) + mesh_depth;
     return out;
 }
 
@@ -343,17 +379,16 @@ BvhBox bvh_box(const BvhTriangle& t) {
     return {lo - pad, hi + pad};
 }
 
-BvhData build_bvh(const WorldTriangles& world, BvhQuality quality) {
-    if (world.shared()) return build_levels(world, quality);
+BvhData build_bvh(const WorldTriangles& world, BvhQuality quality, uint32_t threads) {
+    if (world.shared()) return build_levels(world, quality, threads);
     BvhData out;
     std::vector<BvhTriangle> triangles;
-    triangles.reserve(world.triangles.size());
-    append_hittable(world, 0, world.count(), 0, false, triangles);
-    drop_copies(triangles);
+    append_hittable(world, 0, world.count(), 0, false, threads, triangles);
+    drop_copies(triangles, threads);
     out.dropped = uint(world.triangles.size() - triangles.size());
     out.nodes.push_back({});
     out.triangles.reserve(triangles.size());
-    out.depth = append_tree(triangles, 0, quality, bvh_max_depth, out);
+    out.depth = append_tree(triangles, 0, quality, bvh_max_depth, threads, out);
     return out;
 }
 

@@ -23,8 +23,8 @@ struct BvhData {
     uint dropped = 0;                     // stored triangles that no ray can hit: zero area, not finite, or a copy of an earlier one
 };
 
-// The same input gives the same bytes, whatever the number of threads.
-BvhData build_bvh(const WorldTriangles& world, BvhQuality quality = BvhQuality::quick);
+// The same input gives the same bytes, whatever the number of threads (0: all there are).
+BvhData build_bvh(const WorldTriangles& world, BvhQuality quality = BvhQuality::quick, uint32_t threads = 0);
 
 // The bounds that a triangle is boxed by; see bvh_build.cpp for what they are enlarged by.
 struct BvhBox {

@@ -327,8 +327,8 @@ TEST_F(RaytraceTest, boxes_contain_their_triangles_and_builds_repeat) {
         EXPECT_EQ(data.triangles.size() + data.dropped, m.triangles.size());
         for (auto quality : {BvhQuality::quick, BvhQuality::best}) {
             const BvhData first = build_bvh(m.world(), quality);
-            for (int k = 0; k < 3; ++k) {
-                const BvhData again = build_bvh(m.world(), quality);
+            for (uint32_t threads : {1, 2, 3, 8}) {
+                const BvhData again = build_bvh(m.world(), quality, threads);
                 ASSERT_EQ(first.nodes.size(), again.nodes.size());
                 ASSERT_EQ(first.triangles.size(), again.triangles.size());
                 EXPECT_EQ(0, std::memcmp(first.nodes.data(), again.nodes.data(), first.nodes.size() * sizeof(BvhNode)));

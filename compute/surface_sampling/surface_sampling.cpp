@@ -8,10 +8,15 @@
 #include <numbers>
 #include <tuple>
 
+#include "compute/common/radix_sort.hpp"
+#include "engine/parallel.hpp"
+
 namespace myriad::compute {
 namespace {
 
 using glm::dvec2, glm::dvec3;
+
+constexpr size_t grain = 1 << 14;  // triangles or shares that a thread takes at a time
 
 double squared(dvec3 v) { return v.x * v.x + v.y * v.y + v.z * v.z; }
 
@@ -135,24 +140,71 @@ void cut(const Piece& piece, Share share, double sample_area, std::vector<Share>
     for (uint32_t i = 0; i < 2; ++i) cut(halves[i], {0, 0.5 * share.area, share.triangle, 2 * share.path + i}, sample_area, shares, centers);
 }
 
-// All shares of the surface along Hilbert's curve: systematic samples of small neighbours are then even, too.
-std::vector<Share> ordered_shares(const WorldTriangles& world, double sample_area) {
+// What a piece of the triangles is cut into, in their order.
+struct Cuts {
     std::vector<Share> shares;
     std::vector<dvec3> centers;
-    shares.reserve(world.count()), centers.reserve(world.count());
-    world.for_each([&](uint32_t t, uint32_t, const Corners& corners) {
-        const Piece piece = whole(corners);
-        if (const double area = finite_area(piece); area > 0) cut(piece, {0, area, t, 1}, sample_area, shares, centers);
-    });
+    dvec3 low{HUGE_VAL}, high{-HUGE_VAL};  // of the centres
+};
+
+// All shares of the surface along Hilbert's curve: systematic samples of small neighbours are then even, too. Where they tie
+// there, the triangle's number decides, and the path in it: there is one order.
+std::vector<Share> ordered_shares(const WorldTriangles& world, std::span<const double> areas, double sample_area, uint32_t threads) {
+    std::vector<Cuts> cuts((areas.size() + grain - 1) / grain);
+    engine::parallel_pieces(areas.size(), grain, [&](size_t begin, size_t end) {
+        Cuts& here = cuts[begin / grain];
+        here.shares.reserve(end - begin), here.centers.reserve(end - begin);
+        world.for_each(uint32_t(begin), uint32_t(end), [&](uint32_t t, uint32_t, const Corners& corners) {
+            if (areas[t] > 0) cut(whole(corners), {0, areas[t], t, 1}, sample_area, here.shares, here.centers);
+        });
+        for (const dvec3& c : here.centers) here.low = glm::min(here.low, c), here.high = glm::max(here.high, c);
+    }, threads);
+
+    std::vector<size_t> first{0};
     dvec3 low(HUGE_VAL), high(-HUGE_VAL);
-    for (const dvec3& c : centers) low = glm::min(low, c), high = glm::max(high, c);
+    for (const Cuts& c : cuts) low = glm::min(low, c.low), high = glm::max(high, c.high), first.push_back(first.back() + c.shares.size());
     const dvec3 extent = high - low;
     const double scale = 1 / std::max({extent.x, extent.y, extent.z, 1e-300});
-    for (size_t i = 0; i < shares.size(); ++i) shares[i].curve = hilbert((centers[i] - low) * scale);
-    std::sort(shares.begin(), shares.end(), [](const Share& a, const Share& b) {
-        return std::tie(a.curve, a.triangle, a.path) < std::tie(b.curve, b.triangle, b.path);
-    });
-    return shares;
+    struct Place {
+        uint64_t curve;
+        uint64_t share;
+    };
+    std::vector<Share> shares(first.back());
+    std::vector<Place> places(shares.size());
+    engine::parallel_pieces(cuts.size(), 1, [&](size_t c, size_t) {
+        for (size_t i = 0; i < cuts[c].shares.size(); ++i) {
+            Share share = cuts[c].shares[i];
+            share.curve = hilbert((cuts[c].centers[i] - low) * scale);
+            places[first[c] + i] = {share.curve, first[c] + i};
+            shares[first[c] + i] = share;
+        }
+        cuts[c] = {};
+    }, threads);
+
+    // The upper half of the curve's bits sorts nearly all of it; what shares a cell there is compared in full.
+    radix_sort(places, [](const Place& p) { return p.curve; }, 30, 63, threads);
+    const auto cell = [&](size_t i) { return places[i].curve >> 30; };
+    std::vector<size_t> ends{0};  // of pieces that no run of one cell straddles
+    while (ends.back() < places.size()) {
+        size_t end = std::min(ends.back() + grain, places.size());
+        while (end < places.size() && cell(end) == cell(end - 1)) ++end;
+        ends.push_back(end);
+    }
+    engine::parallel_pieces(ends.size() - 1, 1, [&](size_t which, size_t) {
+        for (size_t run = ends[which], next; run < ends[which + 1]; run = next) {
+            for (next = run + 1; next < ends[which + 1] && cell(next) == cell(run);) ++next;
+            if (next - run == 1) continue;
+            std::sort(places.begin() + ptrdiff_t(run), places.begin() + ptrdiff_t(next), [&](const Place& a, const Place& b) {
+                const Share &x = shares[a.share], &y = shares[b.share];
+                return std::tie(x.curve, x.triangle, x.path) < std::tie(y.curve, y.triangle, y.path);
+            });
+        }
+    }, threads);
+    std::vector<Share> ordered(shares.size());
+    engine::parallel_pieces(places.size(), grain, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) ordered[i] = shares[places[i].share];
+    }, threads);
+    return ordered;
 }
 
 void sample_share(const WorldTriangles& world, const Share& share, uint64_t count, double expected, uint32_t seed, SurfaceSample* samples) {
@@ -184,11 +236,15 @@ std::vector<SurfaceSample> sample_vertices(const WorldTriangles& world, uint64_t
 
 }  // namespace
 
-SurfaceSampling sample_surface(const WorldTriangles& world, uint32_t log2_count, uint32_t seed) {
+SurfaceSampling sample_surface(const WorldTriangles& world, uint32_t log2_count, uint32_t seed, uint32_t threads) {
     assert(log2_count < 32 && world.triangles.size() < uint64_t(1) << 32);
     SurfaceSampling result;
     const uint64_t n = uint64_t(1) << log2_count;
-    world.for_each([&](uint32_t, uint32_t, const Corners& corners) { result.area += finite_area(whole(corners)); });
+    std::vector<double> areas(world.count());
+    engine::parallel_pieces(areas.size(), grain, [&](size_t begin, size_t end) {
+        world.for_each(uint32_t(begin), uint32_t(end), [&](uint32_t t, uint32_t, const Corners& corners) { areas[t] = finite_area(whole(corners)); });
+    }, threads);
+    for (const double area : areas) result.area += area;
     if (!(result.area > 0)) {
         result.samples = sample_vertices(world, n);
         return result;
@@ -198,18 +254,21 @@ SurfaceSampling sample_surface(const WorldTriangles& world, uint32_t log2_count,
     result.radius = float(surface_sample_cover * std::sqrt(sample_area / std::numbers::pi));
 
     // Systematic sampling: sample i is at (i + phase) / n of the cumulative area, so each share gets the floor or the
-    // ceiling of what it is due.
-    const std::vector<Share> shares = ordered_shares(world, sample_area);
+    // ceiling of what it is due. One sum in one order, whatever the threads; then each share is on its own.
+    const std::vector<Share> shares = ordered_shares(world, areas, sample_area, threads);
     const double phase = hashed(seed, 0);
+    std::vector<uint32_t> first(shares.size() + 1);
     double sum = 0;
-    uint64_t first = 0;
-    for (const Share& share : shares) {
-        sum += share.area;
-        const bool last = &share == &shares.back();
-        const uint64_t end = last ? n : std::clamp(uint64_t(std::max(0.0, std::ceil(sum / sample_area - phase))), first, n);
-        if (end > first) sample_share(world, share, end - first, share.area / sample_area, seed, &result.samples[first]);
-        first = end;
+    for (size_t i = 0; i < shares.size(); ++i) {
+        sum += shares[i].area;
+        first[i + 1] = uint32_t(std::clamp(uint64_t(std::max(0.0, std::ceil(sum / sample_area - phase))), uint64_t(first[i]), n));
     }
+    first.back() = uint32_t(n);
+    engine::parallel_pieces(shares.size(), grain, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i)
+            if (const uint32_t count = first[i + 1] - first[i])
+                sample_share(world, shares[i], count, shares[i].area / sample_area, seed, &result.samples[first[i]]);
+    }, threads);
     return result;
 }
 

@@ -20,8 +20,9 @@ struct SurfaceSampling {
 // Measured (README.md): covers 99.9 % of the surface; 1.5 covers 99 %; 1.0996 would be a perfect hexagonal lattice.
 inline constexpr double surface_sample_cover = 1.75;
 
-// Deterministic in all arguments, and the same whether instances share triangles or are written out. Triangles without area, or with
-// non-finite vertices, get no sample, unless there are no others: then samples sit at vertices and have radius 0.
-SurfaceSampling sample_surface(const WorldTriangles& world, uint32_t log2_count, uint32_t seed);
+// Deterministic in all arguments but `threads` (0: all there are), which changes no bit, and the same whether instances share triangles
+// or are written out. Triangles without area, or with non-finite vertices, get no sample, unless there are no others: then samples sit
+// at vertices and have radius 0.
+SurfaceSampling sample_surface(const WorldTriangles& world, uint32_t log2_count, uint32_t seed, uint32_t threads = 0);
 
 }  // namespace myriad::compute

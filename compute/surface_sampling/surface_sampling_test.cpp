@@ -1,5 +1,6 @@
 #include "compute/surface_sampling/surface_sampling.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -117,6 +118,18 @@ TEST(SurfaceSamplingTest, deterministic_and_seeded) {
     };
     EXPECT_TRUE(equal(grid(40).sample(10, 3), grid(40).sample(10, 3)));
     EXPECT_FALSE(equal(grid(40).sample(10, 3), grid(40).sample(10, 4)));
+}
+
+// More triangles than a thread takes at a time: fat ones, thin ones that are cut, and copies, which tie on the curve.
+TEST(SurfaceSamplingTest, the_same_whatever_the_threads) {
+    Mesh mesh = grid(100);
+    for (int i = 0; i < 20000; ++i) mesh.add(vec3(i % 50, 3, 1), vec3(i % 50, 90, 1), vec3(i % 50 + 0.1f, 90, 1));
+    const SurfaceSampling one = sample_surface({mesh.positions, mesh.triangles}, 14, 1, 1);
+    for (const uint32_t threads : {2, 3, 8}) {
+        const SurfaceSampling some = sample_surface({mesh.positions, mesh.triangles}, 14, 1, threads);
+        EXPECT_EQ(one.area, some.area);
+        EXPECT_TRUE(std::ranges::equal(one.samples, some.samples, [](auto& x, auto& y) { return x.triangle == y.triangle && x.u == y.u && x.v == y.v; }));
+    }
 }
 
 TEST(SurfaceSamplingTest, scenes_without_triangles_or_area) {
