@@ -69,10 +69,14 @@ const std::vector<Builtin>& builtins() {
     static const std::vector<Builtin> all = {
         {"atrium", "a sunlit two-storey court with arcades, galleries and curtains (the default scene)",
          {{"detail", "1", {}, 0.25f, 4}}, make_atrium},
+        {"cathedral", "a gothic nave with coloured sun and stained glass",
+         {{"detail", "1", {}, 0.25f, 4}}, make_cathedral},
         {"cornell", "the Cornell box, lit by its ceiling panel or by a point light",
          {{"light", "panel", {"panel", "point"}}, {"cells", "8", {}, 1, 256}}, make_cornell},
         {"hairball", "a ball of hair in a photographer's booth, 168 triangles a strand",
          {{"strands", "5000", {}, 1, 50000}, {"thickness", "1", {}, 0.25f, 4}}, make_hairball},
+        {"teatime", "a table laid for tea in a room with sunny windows",
+         {{"detail", "1", {}, 0.25f, 4}}, make_teatime},
     };
     return all;
 }

@@ -40,7 +40,9 @@ const std::vector<Builtin>& builtins();
 Scene load_builtin(const std::string& query, uint32_t seed);
 
 Scene make_atrium(const BuiltinOptions& options, uint32_t seed);
+Scene make_cathedral(const BuiltinOptions& options, uint32_t seed);
 Scene make_cornell(const BuiltinOptions& options, uint32_t seed);
 Scene make_hairball(const BuiltinOptions& options, uint32_t seed);
+Scene make_teatime(const BuiltinOptions& options, uint32_t seed);
 
 }  // namespace myriad::scenes

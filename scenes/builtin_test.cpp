@@ -71,15 +71,23 @@ TEST(Kit, MirroredAppendKeepsTheFront) {
     }
 }
 
+TEST(Kit, SrgbIsTheFormulaRounded) {
+    for (int i = -100; i <= 100100; ++i) {
+        const double x = std::clamp(double(float(i) * 1e-5f), 0.0, 1.0), encoded = 255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055);
+        const double code = kit::srgb8(float(i) * 1e-5f);
+        ASSERT_LE(std::abs(code - encoded), 0.501) << x;
+    }
+}
+
 TEST(Builtin, EqualSeedsEqualScenes) {
-    for (const char* source : {"builtin:atrium?detail=0.5", "builtin:cornell", "builtin:hairball?strands=300"})
+    for (const char* source : {"builtin:atrium?detail=0.5", "builtin:cathedral?detail=0.25", "builtin:cornell", "builtin:hairball?strands=300", "builtin:teatime?detail=0.25"})
         EXPECT_EQ(hash_of(source, 1), hash_of(source, 1)) << source;
-    for (const char* source : {"builtin:atrium?detail=0.5", "builtin:hairball?strands=300"})
+    for (const char* source : {"builtin:atrium?detail=0.5", "builtin:cathedral?detail=0.25", "builtin:hairball?strands=300", "builtin:teatime?detail=0.25"})
         EXPECT_NE(hash_of(source, 1), hash_of(source, 2)) << source;
 }
 
 TEST(Builtin, TrianglesAreClean) {
-    for (const char* source : {"builtin:atrium", "builtin:atrium?detail=0.25", "builtin:cornell",
+    for (const char* source : {"builtin:atrium", "builtin:atrium?detail=0.25", "builtin:cathedral", "builtin:cathedral?detail=0.25", "builtin:teatime", "builtin:teatime?detail=0.25", "builtin:cornell",
                                "builtin:cornell?cells=1&light=point", "builtin:hairball?strands=20000", "builtin:hairball?strands=1&thickness=0.25"}) {
         Scene scene = load(source);
         const Triangles t = flatten(scene, Sharing::never);
@@ -102,7 +110,7 @@ TEST(Builtin, TrianglesAreClean) {
 }
 
 TEST(Builtin, MaterialsArePhysical) {
-    for (const char* source : {"builtin:atrium", "builtin:cornell", "builtin:hairball?strands=10"}) {
+    for (const char* source : {"builtin:atrium", "builtin:cathedral?detail=0.25", "builtin:cornell", "builtin:hairball?strands=10", "builtin:teatime?detail=0.25"}) {
         for (const auto& m : load(source).materials) {
             const float most = std::max({m.base_color.x, m.base_color.y, m.base_color.z});
             EXPECT_EQ(m.metallic, 0) << m.name;

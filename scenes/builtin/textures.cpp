@@ -1,7 +1,9 @@
 #include "scenes/builtin/textures.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <thread>
 
 namespace myriad::scenes::kit {
 namespace {
@@ -24,22 +26,35 @@ int wrapped(int i, int period) { return ((i % period) + period) % period; }
 
 Texture picture(const char* name, uint32_t width, uint32_t height, const std::function<vec3(vec2 uv)>& color) {
     Texture texture{.name = name, .width = width, .height = height, .rgba = std::vector<uint8_t>(size_t(width) * height * 4, 255)};
-    for (uint32_t y = 0; y < height; ++y)
-        for (uint32_t x = 0; x < width; ++x) {
-            const vec3 c = color(vec2((float(x) + 0.5f) / float(width), (float(y) + 0.5f) / float(height)));
-            for (int k = 0; k < 3; ++k) texture.rgba[(size_t(y) * width + x) * 4 + size_t(k)] = srgb8(c[k]);
-        }
+    const auto rows = [&](uint32_t first, uint32_t last) {
+        for (uint32_t y = first; y < last; ++y)
+            for (uint32_t x = 0; x < width; ++x) {
+                const vec3 c = color(vec2((float(x) + 0.5f) / float(width), (float(y) + 0.5f) / float(height)));
+                for (int k = 0; k < 3; ++k) texture.rgba[(size_t(y) * width + x) * 4 + size_t(k)] = srgb8(c[k]);
+            }
+    };
+    // Pictures are most of the time that a scene takes: each thread has a band of rows, and texels know nothing of each other.
+    const uint32_t bands = std::clamp(std::thread::hardware_concurrency(), 1u, 8u);
+    std::vector<std::thread> threads;
+    for (uint32_t i = 1; i < bands; ++i) threads.emplace_back(rows, height * i / bands, height * (i + 1) / bands);
+    rows(0, height / bands);
+    for (std::thread& thread : threads) thread.join();
     return texture;
 }
 
 float unit(uint32_t bits, uint32_t which) { return float(hashed(bits + 0x9e3779b9u * (which + 1)) >> 8) * 0x1p-24f; }
 
 float noise(vec2 p, int period, uint32_t seed) {
+    // Gradients of unit length, of which each corner has one.
+    static const std::array<vec2, 32> gradients = [] {
+        std::array<vec2, 32> g;
+        for (size_t i = 0; i < g.size(); ++i) g[i] = {std::cos(2 * pi * float(i) / 32), std::sin(2 * pi * float(i) / 32)};
+        return g;
+    }();
     const vec2 cell = glm::floor(p), f = p - cell, s = f * f * f * (f * (f * 6.0f - 15.0f) + 10.0f);
     const auto corner = [&](int dx, int dy) {
         const ivec2 at(wrapped(int(cell.x) + dx, period), wrapped(int(cell.y) + dy, period));
-        const float angle = 2 * pi * unit(hashed(at, seed));
-        return std::cos(angle) * (f.x - float(dx)) + std::sin(angle) * (f.y - float(dy));
+        return glm::dot(gradients[hashed(at, seed) >> 27], f - vec2(dx, dy));
     };
     return 1.4f * glm::mix(glm::mix(corner(0, 0), corner(1, 0), s.x), glm::mix(corner(0, 1), corner(1, 1), s.x), s.y);
 }
@@ -55,11 +70,11 @@ Cell mosaic(vec2 p, ivec2 period, uint32_t seed) {
     // The nearest and the second nearest of the jittered centres around.
     float near = 1e9f, second = 1e9f;
     uint32_t bits = 0;
-    for (int dy = -2; dy <= 2; ++dy)
-        for (int dx = -2; dx <= 2; ++dx) {
+    for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx) {
             const ivec2 other = cell + ivec2(dx, dy);
             const uint32_t h = hashed(ivec2(wrapped(other.x, period.x), wrapped(other.y, period.y)), seed);
-            const float d = glm::length(vec2(other) + vec2(unit(h, 1), unit(h, 2)) - p);
+            const float d = glm::length(vec2(other) + 0.12f + 0.76f * vec2(unit(h, 1), unit(h, 2)) - p);
             if (d < near) second = near, near = d, bits = h;
             else second = std::min(second, d);
         }

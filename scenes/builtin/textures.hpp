@@ -5,7 +5,7 @@
 
 namespace myriad::scenes::kit {
 
-// The colour at the middle of each texel; (u, v) in [0, 1), row 0 at v = 0.
+// The colour at the middle of each texel; (u, v) in [0, 1), row 0 at v = 0. `color` is asked from several threads.
 Texture picture(const char* name, uint32_t width, uint32_t height, const std::function<glm::vec3(glm::vec2 uv)>& color);
 
 // Smooth noise in [-1, 1] that repeats every `period` cells each way, and octaves of it; the same for equal seeds.
