@@ -27,7 +27,7 @@ using kit::pi;
 
 // The way the sun's light travels: from the south, a little from the east, well down.
 const vec3 sun_direction = glm::normalize(vec3(-0.26f, -0.92f, -0.95f));
-constexpr float sun_distance = 30, sun_irradiance = 10, sun_cone = 3.3f;  // metres, W/m^2, metres around the window's middle
+constexpr float sun_distance = 30, sun_irradiance = 6, sun_cone = 3.3f;  // metres, W/m^2, metres around the window's middle
 constexpr float glass_radiance = 1.3f, sunny_glass_radiance = 1.7f;
 
 mat4 moved(vec3 by) { return glm::translate(mat4(1), by); }
@@ -215,7 +215,7 @@ private:
             for (float s : {-1.0f, 1.0f}) place(vault_mesh, moved({middle(i), pier_spring, s * middle_z}));
             window(bars, north[size_t(i % 2)], north_at);
             window(bars, south[size_t(i % 2)], south_at);
-            sun(aisle_window, south_at, colors[size_t(i)] * 0.3f);
+            sun(aisle_window, south_at, colors[size_t(i)] * 0.5f);
         }
         for (int i = 0; i <= bays; ++i)
             for (float side : {0.0f, 180.0f}) place(respond_mesh, moved({bay * float(i), 0, (side == 0 ? -1 : 1) * (outer - outer_thick / 2)}) * turned(side));

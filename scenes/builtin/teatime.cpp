@@ -26,9 +26,9 @@ constexpr float top = table_height + 0.006f;  // what stands on the cloth
 constexpr kit::Opening window{{0.55f, 0.55f}, 0.80f, 1.75f};
 constexpr std::array<float, 2> windows = {-0.55f, 1.45f};  // z of their axes
 
-const vec3 sun_direction = glm::normalize(vec3(0.82f, -0.53f, 0.20f));
-constexpr vec3 sun_irradiance{7.0f, 5.7f, 4.0f};
-constexpr float garden_radiance = 3.2f;
+const vec3 sun_direction = glm::normalize(vec3(0.82f, -0.42f, 0.20f));
+constexpr vec3 sun_irradiance{5.6f, 4.5f, 3.1f};
+constexpr float garden_radiance = 2.0f;
 
 mat4 moved(vec3 by) { return glm::translate(mat4(1), by); }
 mat4 turned(float degrees) { return glm::rotate(mat4(1), glm::radians(degrees), vec3(0, 1, 0)); }
@@ -203,10 +203,10 @@ private:
         }
         // The garden: a picture beyond the windows, as high as the sunbeams leave it. Above it the sky is louvres along the sun's
         // way, which no beam meets and which overlap for who looks up less steeply than the sun comes down.
-        const float far = left - 2.4f, high = 2.35f, pitch = 0.12f, depth = 0.55f, z0 = back - 3.5f, z1 = front + 3.5f;
+        const float far = left - 2.4f, high = window.sill - (left - far) * sun_direction.y / sun_direction.x, pitch = 0.12f, depth = 0.55f, z0 = back - 3.5f, z1 = front + 3.5f;
         kit::quad(outside, {far, -0.6f, z1}, {0, 0, z0 - z1}, {0, high + 0.6f, 0}, 16, 8);
         const vec3 slat = glm::normalize(vec3(sun_direction.x, sun_direction.y, 0)) * depth;
-        for (float y = high; y < high + 2.8f; y += pitch) kit::quad(outside, vec3(far, y, z1) - slat * 0.5f, {0, 0, z0 - z1}, -slat, 16, 1);
+        for (float y = high - 0.6f; y < high + 2.8f; y += pitch) kit::quad(outside, vec3(far, y, z1) - slat * 0.5f, {0, 0, z0 - z1}, -slat, 16, 1);
         for (size_t i = 0; i < outside.positions.size(); ++i) outside.texcoords[i] = {(outside.positions[i].z - z0) / 5.5f, std::min((outside.positions[i].y + 0.6f) / (high + 1.2f), 0.99f)};
         const uint32_t material = kit::add_material(scene_, "garden", vec3(0.2f), 1);
         scene_.textures.push_back(garden(seed_ + 9));
@@ -218,7 +218,7 @@ private:
         Primitive curtained;
         kit::quad(curtained, {1.7f, 0.16f, front - 0.03f}, {-2.4f, 0, 0}, {0, 2.1f, 0}, 6, 6);
         const uint32_t sheer = kit::add_material(scene_, "sheer curtain", vec3(0.7f), 1);
-        scene_.materials[sheer].emissive = {1.30f, 1.20f, 1.02f};
+        scene_.materials[sheer].emissive = {2.6f, 2.4f, 2.05f};
         place(mesh("door", {{sheer, std::move(curtained)}}), mat4(1));
         const uint32_t chintz = plain("curtains", {0.74f, 0.66f, 0.50f}, 0.9f, true);
         place(mesh("window wall", {{white_, std::move(shell)}, {white_, std::move(bars)}, {chintz, std::move(curtains)}, {brass_, std::move(rods)}}), mat4(1));

@@ -157,7 +157,21 @@ void spoon(Primitive& silver, float detail) {
     const auto path = kit::spline<vec3>({{-0.022f, 0.0062f, 0}, {-0.012f, 0.0062f, 0}, {0, 0.0062f, 0}, {0.014f, 0.0066f, 0}, {0.022f, 0.0092f, 0}, {0.040f, 0.0135f, 0}, {0.075f, 0.0125f, 0}, {0.105f, 0.0065f, 0}, {0.116f, 0.0052f, 0}}, per_span, false);
     auto scale = kit::spline<vec2>({{0.0006f, 0.0008f}, {0.0100f, 0.0045f}, {0.0128f, 0.0060f}, {0.0085f, 0.0045f}, {0.0026f, 0.0028f}, {0.0021f, 0.0026f}, {0.0030f, 0.0024f}, {0.0056f, 0.0026f}, {0.0010f, 0.0012f}}, per_span, false);
     for (vec2& w : scale) w = glm::max(w, vec2(4e-4f, 6e-4f));
-    kit::loft(silver, section, kit::frames_along(path, {0, 1, 0}), scale, true);
+    const auto frames = kit::frames_along(path, {0, 1, 0});
+    kit::loft(silver, section, frames, scale, false);
+    // No point sees all of a crescent: its ends are closed by what lies between its two curves.
+    for (const bool end : {false, true}) {
+        const kit::Frame& frame = end ? frames.back() : frames.front();
+        const vec2 size = end ? scale.back() : scale.front();
+        const vec3 normal = glm::normalize(glm::cross(frame.across, frame.up)) * (end ? 1.0f : -1.0f);
+        const uint32_t first = uint32_t(silver.positions.size());
+        for (const vec2 p : section) kit::vertex(silver, frame.at + frame.across * (p.x * size.x) + frame.up * (p.y * size.y), normal, p);
+        const auto triangle = [&](int a, int b, int c) { kit::triangle(silver, first + uint32_t(a), first + uint32_t(end ? b : c), first + uint32_t(end ? c : b)); };
+        for (int i = 0; i < n; ++i) {  // `section` goes right along the lower curve, and back along the upper one
+            if (i + 1 < n) triangle(i, i + 1, 2 * n - i - 1);
+            if (i > 0) triangle(i, 2 * n - i - 1, 2 * n - i);
+        }
+    }
 }
 
 void cake_knife(Primitive& silver, Primitive& handle, float detail) {

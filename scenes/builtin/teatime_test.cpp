@@ -88,6 +88,7 @@ TEST(TeatimeParts, PiecesTurnedInOneAreClosed) {
     teatime::spoon(spoon, 1);
     EXPECT_EQ(open_edges(macaron), 0u);
     EXPECT_GT(signed_volume(macaron), 0);
+    EXPECT_EQ(open_edges(spoon), 0u);
     EXPECT_GT(signed_volume(spoon), 0);
 }
 
