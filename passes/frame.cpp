@@ -1,6 +1,7 @@
 #include "passes/frame.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "engine/transfer.hpp"
@@ -32,15 +33,30 @@ GatherVisibility gather_visibility(Visibility v) {
 
 }  // namespace
 
-Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles, const FrameSettings& settings)
-    : Frame(device, scene, triangles, world_triangles(triangles), settings) {}
+template <class Make>
+auto Frame::step(const char* name, Make make) {
+    struct Entry {
+        std::vector<BuildStep>& steps;
+        const char* name;
+        std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
+        ~Entry() { steps.push_back({name, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count()}); }
+    } entry{build_steps_, name};
+    report(name, 0);
+    return make();
+}
 
-Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles, const compute::WorldTriangles& world,
+Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles, const FrameSettings& settings)
+    : Frame(device, scene, triangles, {world_triangles(triangles), settings.cache}, settings) {}
+
+Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles, compute::Derived derived,
              const FrameSettings& settings)
-    : device_(device), settings_(settings), recorder_(device), geometry_(device, scene, triangles), lights_(device, scene, triangles),
-      bvh_(device, world), gbuffer_(device, settings.width, settings.height, bvh_.constants()),
+    : device_(device), settings_(settings), recorder_(device),
+      geometry_(step("uploading triangles", [&] { return Geometry(device, scene, triangles); })),
+      lights_(step("listing lights", [&] { return LightTable(device, scene, triangles); })),
+      bvh_(step("building the ray tree", [&] { return derived.bvh(device); })), gbuffer_(device, settings.width, settings.height, bvh_.constants()),
       compose_(device, settings.width, settings.height),
       exhausted_(device, "frame", "exhausted walks", 1), host_words_(device, "frame", "frame words", 5, engine::Location::host) {
+    const compute::WorldTriangles& world = derived.world();
     const glm::vec3 far = glm::max(glm::abs(triangles.lo), glm::abs(triangles.hi));
     reach_ = std::max({far.x, far.y, far.z});
     const double area = total_area(world);
@@ -53,26 +69,23 @@ Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::T
     size_.bvh_nodes = bvh_.nodes();
 
     if (DirectPass::needed(lights_)) direct_.emplace(device, settings.width, settings.height, 0, bvh_.constants());
-    if (lights_.power() > 0 && settings.vpls > 0 && !triangles.triangles.empty()) make_indirect(world);
-    report("compiling kernels", 0);
-    warm_up_ms_ = recorder_.warm_up();
+    if (lights_.power() > 0 && settings.vpls > 0 && !triangles.triangles.empty()) make_indirect(derived);
+    step("compiling kernels", [&] { recorder_.warm_up(); });
     if (!vpl_) return;
-    report("finding where light goes", 0);
-    vpl_->prepare(recorder_, geometry_, bvh_, lights_, settings.bounces, settings.seed);
+    step("finding where light goes", [&] { vpl_->prepare(recorder_, geometry_, bvh_, lights_, settings.bounces, settings.seed); });
     if (!tree_) return;
     auto scope = recorder_.scope("refit");
     tree_->refit(recorder_, geometry_.positions(), geometry_.triangles(), geometry_.instances());
 }
 
-void Frame::make_indirect(const compute::WorldTriangles& world) {
+void Frame::make_indirect(compute::Derived& derived) {
     const FrameSettings& settings = settings_;
     vpl_.emplace(device_, settings.vpls, bvh_.constants());
     vpl_->sure_paths(lights_, settings.bounces);  // throws when not one path fits
     gather_.emplace(device_, gather_visibility(settings.visibility), settings.width, settings.height, bvh_.constants());
     if (settings.filter && block_ > 1) filter_.emplace(device_, settings.width, settings.height);
     if (settings.visibility != Visibility::manylods) return;
-    report("sampling the surface and sorting the samples", 0);
-    tree_.emplace(device_, world, settings.log2_samples, settings.seed);
+    tree_.emplace(step("sampling the surface", [&] { return derived.bsh(device_, settings.log2_samples, settings.seed); }));
     size_.samples = tree_->leaves();
     size_.bsh_blocks = tree_->blocks();
     maps_.emplace(device_, settings.maps, settings.vpls, block_ * block_);

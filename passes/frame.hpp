@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "compute/derived/derived.hpp"
 #include "passes/compose/compose.hpp"
 #include "passes/direct/direct.hpp"
 #include "passes/filter/filter.hpp"
@@ -38,6 +39,7 @@ struct FrameSettings {
     uint32_t log2_samples = 20;   // surface samples, leaves of the BSH
     float vpl_bound = 0;          // bound of the geometry term, 1/m^2; 0: pi * vpls / area (passes/gather)
     float bias = 0.5f;            // receiver bias, half diagonals of a texel
+    engine::Cache* cache = nullptr;  // of what is made of the triangles before the first frame; null: it is made anew
     // Called now and then with a stage and how much of it is done, 0 to 1.
     std::function<void(const std::string& stage, double done)> progress;
 };
@@ -46,6 +48,12 @@ struct SceneSize {
     uint64_t triangles = 0;                       // in the world
     uint64_t stored_triangles = 0, instances = 0; // fewer where instances share them; instances that do
     uint64_t samples = 0, bsh_blocks = 0, bvh_nodes = 0, lights = 0;
+};
+
+// A step of a frame's construction, on the host's clock.
+struct BuildStep {
+    std::string name;
+    double ms = 0;
 };
 
 struct FrameCounters {
@@ -77,18 +85,21 @@ public:
     const SceneSize& size() const { return size_; }
     const FrameCounters& counters() const { return counters_; }
     const std::vector<engine::PassTime>& times() const { return times_; }  // of the last frame
-    double warm_up_ms() const { return warm_up_ms_; }  // compiling kernels, at construction
+    const std::vector<BuildStep>& build_steps() const { return build_steps_; }
 
 private:
-    Frame(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles, const compute::WorldTriangles& world,
+    Frame(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles, compute::Derived derived,
           const FrameSettings& settings);
-    void make_indirect(const compute::WorldTriangles& world);
+    void make_indirect(compute::Derived& derived);
+    template <class Make>
+    auto step(const char* name, Make make);  // reports it and times it
     void gather_indirect(float pixel_angle);
     void read_back_words();
     void report(const std::string& stage, double done) const;
 
     engine::Device& device_;
     FrameSettings settings_;
+    std::vector<BuildStep> build_steps_;
     engine::Recorder recorder_;
     Geometry geometry_;
     LightTable lights_;
@@ -109,7 +120,6 @@ private:
     SceneSize size_;
     FrameCounters counters_;
     std::vector<engine::PassTime> times_;
-    double warm_up_ms_ = 0;
 };
 
 }  // namespace myriad::passes

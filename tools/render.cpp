@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include "passes/geometry/unshaded.hpp"
 #include "scenes/scene.hpp"
@@ -91,9 +92,14 @@ void render(const RenderOptions& options) {
     settings.progress = [&](const std::string& stage, double done) {
         progress.show(options.repeat > 1 && number ? "frame " + std::to_string(number) + ": " + stage : stage, done);
     };
+    std::optional<engine::Cache> cache;
+    if (!options.cache.empty()) settings.cache = &cache.emplace(options.cache);
     progress.show("building", 0);
     run.recorder_ms = run.now_ms();  // the recorder is the first thing that a frame makes
     const auto frame = run.phase("build", [&] { return std::make_unique<passes::Frame>(*device, loaded.scene, loaded.triangles, settings); });
+    run.build = frame->build_steps();
+    if (cache) run.cache = CacheUse{cache->found(), cache->missing(), cache->damaged()};
+    if (cache && !cache->problem().empty()) progress.clear(), std::fprintf(stderr, "warning: %s.\n", cache->problem().c_str());
     run.size = frame->size();
     run.settings = settings_json(settings, frame->vpl_bound());
     run.settings["sky"] = choice_name(sky_choices(), options.sky);

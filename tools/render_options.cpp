@@ -117,6 +117,8 @@ std::shared_ptr<RenderOptions> add_render_options(CLI::App& command) {
     add_parsed(command, "--memory-limit", "MiB", "", "for all buffers on the device; unless given, what it has", [&o](const std::string& text) {
         o.device.memory_limit = parse_whole("--memory-limit", text, 1, uint64_t(1) << 30) << 20;
     });
+    add_parsed(command, "--cache", "FOLDER|off", o.cache.empty() ? "off" : o.cache.string(), "where ray trees and samples are kept between runs, 4 GiB at most; safe to delete",
+               [&o](const std::string& text) { o.cache = text == "off" ? "" : text; });
     command.add_option("--device", o.device.select, "part of a name, or an index, as myriad info lists them")->type_name("NAME|INDEX");
     add_whole(command, "--repeat", o.repeat, 1, 100000, "frames to render, all the same; times are then medians");
     std::string text = footer;

@@ -1,6 +1,7 @@
 // The options of `myriad render`: what they are, not what they do.
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,6 +22,7 @@ struct RenderOptions {
     passes::FrameSettings frame;
     engine::DeviceOptions device;
     scenes::Sharing instances = scenes::Sharing::automatic;
+    std::filesystem::path cache = engine::default_cache_folder();  // empty: none
     uint32_t repeat = 1;
     bool full_floats = false, quiet = false;
 };

@@ -1,5 +1,7 @@
 #include "tools/stats.hpp"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdarg>
@@ -14,6 +16,12 @@ namespace myriad::tools {
 namespace {
 
 using nlohmann::ordered_json;
+
+// Of the process, up to now; on a CPU device the device's memory is in it.
+uint64_t peak_host_bytes() {
+    rusage usage;
+    return getrusage(RUSAGE_SELF, &usage) == 0 ? uint64_t(usage.ru_maxrss) * 1024 : 0;
+}
 
 // A float as people write it: 0.1, not 0.10000000149.
 double shortest(float value) { return std::strtod(show_number(value).c_str(), nullptr); }
@@ -127,6 +135,9 @@ std::string stats_json(const RunRecord& run) {
                          {"scene", scene_json(run)},
                          {"settings", run.settings}};
     for (const HostPhase& phase : run.phases) json["host_ms"][phase.name] = rounded(phase.ms);
+    for (const passes::BuildStep& step : run.build) json["build_ms"][step.name] = rounded(step.ms);
+    if (run.cache) json["cache"] = {{"found", run.cache->found}, {"missing", run.cache->missing}, {"damaged", run.cache->damaged}};
+    json["peak_host_bytes"] = peak_host_bytes();
     json["frames"] = ordered_json::array();
     for (const FrameRun& frame : run.frames) {
         ordered_json passes = ordered_json::array();

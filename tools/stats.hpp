@@ -28,12 +28,19 @@ struct FrameRun {
     std::map<std::string, uint64_t> peak_bytes;  // by kind of buffer, since the run began
 };
 
+// What the cache of derived data was good for: entries found, and not; of these, damaged ones, made anew.
+struct CacheUse {
+    uint64_t found = 0, missing = 0, damaged = 0;
+};
+
 struct RunRecord {
     engine::DeviceInfo device;
     std::string scene, camera;
     passes::SceneSize size;
     nlohmann::ordered_json settings;
     std::vector<HostPhase> phases;     // before and after the frames: load, build, write …
+    std::vector<passes::BuildStep> build;  // what the phase of that name consists of, and a little more
+    std::optional<CacheUse> cache;     // absent: there was none
     std::vector<FrameRun> frames;
     double recorder_ms = 0;            // when the recorder's host clock was 0
     std::optional<double> exposure;    // absent: no picture was asked for

@@ -1,6 +1,6 @@
 #include "compute/bsh/bsh.hpp"
 
-#include <chrono>
+#include <bit>
 
 #include "compute/bsh/bsh_order.hpp"
 #include "compute/kernels.hpp"
@@ -21,33 +21,34 @@ std::vector<BshLevel> bsh_levels(uint leaves) {
     return levels;
 }
 
-Bsh::Bsh(engine::Device& device, const WorldTriangles& world, uint32_t log2_samples, uint32_t seed)
-    : leaves_(device, compute_kernels, "bsh/leaves", world.constants()), inner_(device, compute_kernels, "bsh/inner"), depth_(log2_samples),
-      shared_(world.shared()) {
+BshLeaves bsh_leaves(const WorldTriangles& world, uint32_t log2_samples, uint32_t seed) {
     assert(log2_samples <= 28 && "slots are 32-bit");
-    using Clock = std::chrono::steady_clock;
-    auto ms_since = [](Clock::time_point start) { return std::chrono::duration<double, std::milli>(Clock::now() - start).count(); };
-
-    const auto begin = Clock::now();
     const SurfaceSampling sampling = sample_surface(world, log2_samples, seed);
-    sampling_ms_ = ms_since(begin);
-    if (sampling.empty()) return;
-    sample_radius_ = sampling.radius;
-    area_ = sampling.area;
-
-    const auto sampled = Clock::now();
     std::vector<glm::vec3> points(sampling.samples.size());
-    engine::parallel_pieces(points.size(), 1 << 14, [&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i) {
-            const SurfaceSample& s = sampling.samples[i];
-            const Corners c = world.corners(s.triangle);
-            points[i] = bsh_position(c.p0, c.p1, c.p2, s.u, s.v);
-        }
-    });
     std::vector<SurfaceSample> leaves(points.size());
+    const auto for_pieces = [&](auto work) {
+        engine::parallel_pieces(points.size(), 1 << 14, [&](size_t begin, size_t end) {
+            for (size_t i = begin; i < end; ++i) work(i);
+        });
+    };
+    for_pieces([&](size_t i) {
+        const SurfaceSample& s = sampling.samples[i];
+        const Corners c = world.corners(s.triangle);
+        points[i] = bsh_position(c.p0, c.p1, c.p2, s.u, s.v);
+    });
     const std::vector<uint32_t> order = bsh_order(points);
-    for (size_t i = 0; i < leaves.size(); ++i) leaves[i] = sampling.samples[order[i]];
-    ordering_ms_ = ms_since(sampled);
+    for_pieces([&](size_t i) { leaves[i] = sampling.samples[order[i]]; });
+    return {std::move(leaves), sampling.area, sampling.radius};
+}
+
+Bsh::Bsh(engine::Device& device, const WorldTriangles& world, std::span<const SurfaceSample> leaves, double area, float radius)
+    : leaves_(device, compute_kernels, "bsh/leaves", world.constants()), inner_(device, compute_kernels, "bsh/inner"),
+      shared_(world.shared()) {
+    if (leaves.empty()) return;
+    assert(std::has_single_bit(leaves.size()) && leaves.size() <= uint64_t(1) << 28 && "slots are 32-bit");
+    depth_ = uint(std::countr_zero(leaves.size()));
+    sample_radius_ = radius;
+    area_ = area;
 
     levels_ = bsh_levels(uint(leaves.size()));
     samples_ = engine::upload(device, "scene", "samples", leaves);

@@ -19,11 +19,23 @@ struct BshLevel {
 };
 std::vector<BshLevel> bsh_levels(uint leaves);
 
+// What the host finds of a hierarchy: the samples, in the order of leaves. 2^d of them, or none where no triangle is finite.
+struct BshLeaves {
+    std::vector<SurfaceSample> samples;
+    double area = 0;   // of the whole surface
+    float radius = 0;  // of a sample's disc
+};
+// Samples the surface at 2^log2_samples points and finds the topology. Deterministic.
+BshLeaves bsh_leaves(const WorldTriangles& world, uint32_t log2_samples, uint32_t seed);
+
 class Bsh {
 public:
-    // Samples the surface at 2^log2_samples points and finds the topology, on the host. Bounds come with refit.
-    // A scene without triangles gives an empty() hierarchy, which has no leaves and must not be read.
-    Bsh(engine::Device& device, const WorldTriangles& world, uint32_t log2_samples, uint32_t seed);
+    // Bounds come with refit. Without samples the hierarchy is empty(): it has no leaves and must not be read.
+    Bsh(engine::Device& device, const WorldTriangles& world, std::span<const SurfaceSample> samples, double area, float radius);
+    Bsh(engine::Device& device, const WorldTriangles& world, const BshLeaves& leaves)
+        : Bsh(device, world, leaves.samples, leaves.area, leaves.radius) {}
+    Bsh(engine::Device& device, const WorldTriangles& world, uint32_t log2_samples, uint32_t seed)
+        : Bsh(device, world, bsh_leaves(world, log2_samples, seed)) {}
 
     // Computes all bounds for these positions: a dispatch a level, nothing read back. Triangles and instances are those sampled;
     // `instances` may be null where triangles are not shared.
@@ -49,16 +61,14 @@ public:
     const engine::Array<uint>& cones() const { return cones_; }
     const engine::Array<uvec2>& boxes() const { return boxes_; }
     uint64_t bytes() const;
-    double sampling_ms() const { return sampling_ms_; }  // host time of construction
-    double ordering_ms() const { return ordering_ms_; }
 
 private:
     engine::Program leaves_, inner_;
-    uint depth_;
+    uint depth_ = 0;
     bool shared_;
     std::vector<BshLevel> levels_;
     float sample_radius_ = 0;
-    double area_ = 0, sampling_ms_ = 0, ordering_ms_ = 0;
+    double area_ = 0;
     engine::Array<SurfaceSample> samples_;
     engine::Array<vec4> frames_, merged_, merged_boxes_;
     engine::Array<uvec2> spheres_, boxes_;

@@ -4,19 +4,12 @@
 
 namespace myriad::compute {
 
-Bvh::Bvh(engine::Device& device, const WorldTriangles& world, BvhQuality quality)
-    // A quarter stays for the loops of the kernel around the traversal.
-    : shared_(world.shared()), loop_budget_(device.loop_limit() - device.loop_limit() / 4) {
-    const auto start = std::chrono::steady_clock::now();
-    const BvhData data = build_bvh(world, quality);
-    build_ms_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-    nodes_ = engine::upload(device, "scene", "BVH nodes", data.nodes);
-    triangles_ = engine::upload(device, "scene", "BVH triangles", data.triangles);
-    instances_ = engine::upload(device, "scene", "BVH instances", data.instances);
-    triangle_count_ = data.triangles.size();
-    dropped_ = data.dropped;
-    depth_ = data.depth;
-}
+Bvh::Bvh(engine::Device& device, const WorldTriangles& world, const BvhParts& tree)
+    : nodes_(engine::upload(device, "scene", "BVH nodes", tree.nodes)), triangles_(engine::upload(device, "scene", "BVH triangles", tree.triangles)),
+      instances_(engine::upload(device, "scene", "BVH instances", tree.instances)), triangle_count_(tree.triangles.size()), dropped_(tree.dropped),
+      shared_(world.shared()), depth_(tree.depth),
+      // A quarter stays for the loops of the kernel around the traversal.
+      loop_budget_(device.loop_limit() - device.loop_limit() / 4) {}
 
 engine::Constants Bvh::constants(engine::Constants own) const {
     own[instanced_constant] = shared_;

@@ -11,7 +11,9 @@ namespace myriad::compute {
 class Bvh {
 public:
     // Throws OutOfMemory.
-    Bvh(engine::Device& device, const WorldTriangles& world, BvhQuality quality = BvhQuality::quick);
+    Bvh(engine::Device& device, const WorldTriangles& world, const BvhParts& tree);
+    Bvh(engine::Device& device, const WorldTriangles& world, BvhQuality quality = BvhQuality::quick)
+        : Bvh(device, world, build_bvh(world, quality)) {}
 
     // What kernels that include trace.glsl are specialised by, beside their own: programs are made for a tree.
     engine::Constants constants(engine::Constants own = {}) const;
@@ -24,7 +26,6 @@ public:
     uint64_t dropped() const { return dropped_; }           // zero area, not finite, or a copy of another
     uint64_t bytes() const { return nodes_.bytes() + triangles_.bytes() + instances_.bytes(); }
     uint depth() const { return depth_; }
-    double build_ms() const { return build_ms_; }
 
 private:
     engine::Array<BvhNode> nodes_;
@@ -33,7 +34,6 @@ private:
     uint64_t triangle_count_ = 0, dropped_ = 0;
     bool shared_ = false;
     uint depth_ = 0, loop_budget_ = 0;
-    double build_ms_ = 0;
 };
 
 }  // namespace myriad::compute

@@ -23,6 +23,17 @@ struct BvhData {
     uint dropped = 0;                     // stored triangles that no ray can hit: zero area, not finite, or a copy of an earlier one
 };
 
+// The same wherever it lies.
+struct BvhParts {
+    std::span<const BvhNode> nodes;
+    std::span<const BvhTriangle> triangles;
+    std::span<const Instance> instances;
+    uint depth = 0, dropped = 0;
+    BvhParts() = default;
+    BvhParts(const BvhData& data)
+        : nodes(data.nodes), triangles(data.triangles), instances(data.instances), depth(data.depth), dropped(data.dropped) {}
+};
+
 // The same input gives the same bytes, whatever the number of threads (0: all there are).
 BvhData build_bvh(const WorldTriangles& world, BvhQuality quality = BvhQuality::quick, uint32_t threads = 0);
 

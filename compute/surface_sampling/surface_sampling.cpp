@@ -86,25 +86,33 @@ double hashed(uint32_t a, uint32_t b) {
     return double((h ^ h >> 32) >> 11) * 0x1p-53;
 }
 
-// Where a point of the unit cube is on Hilbert's curve of 2^63 cells (Skilling 2004).
+// 21 bits, two zeros between any two of them.
+uint64_t spread(uint64_t v) {
+    v = (v | v << 32) & 0x001f00000000ffffu;
+    v = (v | v << 16) & 0x001f0000ff0000ffu;
+    v = (v | v << 8) & 0x100f00f00f00f00fu;
+    v = (v | v << 4) & 0x10c30c30c30c30c3u;
+    return (v | v << 2) & 0x1249249249249249u;
+}
+
+// Where a point of the unit cube is on Hilbert's curve of 2^63 cells (Skilling 2004). Without branches: they would go either
+// way, and millions of points come here.
 uint64_t hilbert(dvec3 p) {
-    std::array<uint32_t, 3> x;
-    for (int i = 0; i < 3; ++i) x[i] = uint32_t(std::clamp(p[i], 0.0, 1.0) * 2097151.0);
-    const uint32_t top = 1u << 20;
-    for (uint32_t bit = top; bit > 1; bit >>= 1)
-        for (uint32_t& v : x) {
-            const uint32_t flip = v & bit ? bit - 1 : 0, swap = v & bit ? 0 : (x[0] ^ v) & (bit - 1);
-            x[0] ^= flip ^ swap;
-            v ^= swap;
+    const auto cell = [](double v) { return uint32_t(std::clamp(v, 0.0, 1.0) * 2097151.0); };
+    uint32_t x = cell(p.x), y = cell(p.y), z = cell(p.z);
+    for (int bit = 20; bit > 0; --bit) {
+        const uint32_t below = (1u << bit) - 1;
+        x ^= below & (0u - (x >> bit & 1));
+        for (uint32_t* v : {&y, &z}) {
+            const uint32_t set = 0u - (*v >> bit & 1), flip = below & set, swap = (x ^ *v) & below & ~set;
+            x ^= flip ^ swap;
+            *v ^= swap;
         }
-    x[1] ^= x[0], x[2] ^= x[1];
-    uint32_t turn = 0;
-    for (uint32_t bit = top; bit > 1; bit >>= 1)
-        if (x[2] & bit) turn ^= bit - 1;
-    uint64_t code = 0;
-    for (int bit = 20; bit >= 0; --bit)
-        for (uint32_t v : x) code = code << 1 | ((v ^ turn) >> bit & 1);
-    return code;
+    }
+    y ^= x, z ^= y;
+    uint32_t turn = z >> 1;  // then of each bit: whether the bits above it are odd in number
+    for (int shift = 1; shift < 32; shift *= 2) turn ^= turn >> shift;
+    return spread(x ^ turn) << 2 | spread(y ^ turn) << 1 | spread(z ^ turn);
 }
 
 Piece whole(const Corners& c) { return {{dvec3(c.p0), {0, 0}}, {dvec3(c.p1), {1, 0}}, {dvec3(c.p2), {0, 1}}}; }
