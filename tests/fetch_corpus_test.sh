@@ -31,9 +31,9 @@ debs  | apt | 1-1 | usr/share/x
 @n/pm | npm | 2.0 | package/hdri
 END
 cat >"$root/tools/corpus/items" <<'END'
-one  | debs        | one.json   | the first
-two  | debs @n/pm  | debs/a b.obj | the second
-hdri | @n/pm       | -          | environments
+one  | debs        | one.json     |           | the first
+two  | debs @n/pm  | debs/a b.obj | --unit cm | the second
+hdri | @n/pm       | -            |           | environments
 END
 echo "A mesh | Somebody | CC0 | debs" >"$root/tools/corpus/licences"
 hash() { printf '%s  %s\n' "$(sha256sum "$1" | cut -c1-64)" "$2"; }
@@ -67,6 +67,7 @@ run 0
 expect "the scenes" test -s "$corpus/one.glb" -a -s "$corpus/two.glb"
 expect "a recipe lies beside the sources" is "$(cat "$corpus/one.glb")" "glb of $corpus/sources/one.json"
 expect "a file of a package" is "$(cat "$corpus/two.glb")" "glb of $corpus/sources/debs/a b.obj"
+expect "with the arguments of the table" grep -q "^myriad convert --quiet --unit cm " "$folder/asked"
 expect "an environment" is "$(cat "$corpus/hdri/sun.exr")" "v/1 pixels"
 expect "the licences" grep -q "by Somebody; CC0" "$corpus/LICENCES.txt"
 expect "each package once" asked apt-get 1
