@@ -96,6 +96,17 @@ touch "$folder/offline"
 run 0 one
 expect "made again" asked myriad 2
 
+# A table that has grown: the package is fetched again, and has all that is asked of it.
+afresh
+run 0 one
+cp "$root/tools/corpus/files.sha256" "$folder/tables"
+hash "$have/deb/usr/share/x/other" "debs/other" >>"$root/tools/corpus/files.sha256"
+echo '{"new": 2}' >"$root/tools/corpus/one.json"
+run 0 one
+expect "what the table has now" test -f "$corpus/sources/debs/other"
+expect "fetched again" asked apt-get 2
+cp "$folder/tables" "$root/tools/corpus/files.sha256"
+
 # Another version of a package will do if its files are the same.
 afresh
 touch "$folder/newer"
