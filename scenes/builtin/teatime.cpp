@@ -46,7 +46,7 @@ public:
         scene_.lights.push_back({Light::Type::directional, "sun", {-10, 8, 0}, sun_direction, sun_irradiance});
         kit::add_camera(scene_, "table", {0.70f, 1.22f, 1.02f}, {-0.06f, 0.815f, -0.04f}, 40);
         kit::add_camera(scene_, "room", {2.2f, 1.55f, 2.55f}, {-0.45f, 0.82f, -0.35f}, 50);
-        kit::add_camera(scene_, "teapot", {0.40f, 0.98f, 0.55f}, {-0.08f, 0.80f, 0.02f}, 36);
+        kit::add_camera(scene_, "teapot", {0.385f, 0.985f, 0.50f}, {-0.09f, 0.806f, 0.0f}, 40);
         return std::move(scene_);
     }
 

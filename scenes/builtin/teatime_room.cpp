@@ -61,12 +61,11 @@ void tablecloth(Primitive& out, float radius, float side, uint32_t seed, float d
     };
     vec2 ignored;
     const int around = steps(280, detail), along = steps(64, detail);
-    // u runs backwards so that the front is above.
-    kit::patch(out, around, along, [&](float u, float v) { return point(1 - u, v, ignored); });
+    kit::patch(out, around, along, [&](float u, float v) { return point(u, v, ignored); });
     for (size_t j = 0, i = first; j <= size_t(along); ++j)
         for (size_t k = 0; k <= size_t(around); ++k, ++i) {
             vec2 flat;
-            point(1 - float(k) / float(around), float(j) / float(along), flat);
+            point(float(k) / float(around), float(j) / float(along), flat);
             out.texcoords[i] = 0.5f + flat / side;
         }
 }

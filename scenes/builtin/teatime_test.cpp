@@ -102,6 +102,12 @@ TEST(TeatimeParts, TableclothKeepsItsLengthAndLiesOnTheTable) {
             EXPECT_GT(p.y, 0);  // nothing of the table shows through; folds go under it further down
         }
     }
+    for (size_t i = 0; i < cloth.indices.size(); i += 3) {
+        const auto at = [&](size_t k) { return cloth.positions[cloth.indices[i + k]]; };
+        if (std::hypot(at(0).x, at(0).z) < 0.5f) {
+            ASSERT_GT(glm::cross(at(1) - at(0), at(2) - at(0)).y, 0);  // its front is above
+        }
+    }
     EXPECT_LT(highest, 0.006f);                      // cups stand on it
     EXPECT_GT(lowest, -0.735f);                      // and it does not reach the floor
     EXPECT_LT(lowest, -(0.95f * std::sqrt(2.0f) - 0.62f) * 0.8f);  // its corners hang as far as they are long
