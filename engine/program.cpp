@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
+#include <new>
 #include <utility>
 #include <vector>
 
@@ -19,12 +21,17 @@ struct Interface {
 
 // Reads back from the SPIR-V what the host must agree with, so that nothing is typed twice (style, habits 1 and 8).
 Interface reflect(const uint32_t* begin, const uint32_t* end) {
+    // The kernels were validated when they were built, so there is one reason to fail: no memory.
+    const auto check = [](spvc_result result) {
+        if (result != SPVC_SUCCESS) throw std::bad_alloc();
+    };
     spvc_context context = nullptr;
     spvc_parsed_ir ir = nullptr;
     spvc_compiler compiler = nullptr;
-    spvc_context_create(&context);
-    spvc_context_parse_spirv(context, begin, size_t(end - begin), &ir);
-    spvc_context_create_compiler(context, SPVC_BACKEND_NONE, ir, SPVC_CAPTURE_MODE_TAKE_OWNERSHIP, &compiler);
+    check(spvc_context_create(&context));
+    const std::unique_ptr<spvc_context_s, void (*)(spvc_context)> owner(context, spvc_context_destroy);
+    check(spvc_context_parse_spirv(context, begin, size_t(end - begin), &ir));
+    check(spvc_context_create_compiler(context, SPVC_BACKEND_NONE, ir, SPVC_CAPTURE_MODE_TAKE_OWNERSHIP, &compiler));
 
     Interface out;
     spvc_specialization_constant size[3];
@@ -35,16 +42,15 @@ Interface reflect(const uint32_t* begin, const uint32_t* end) {
     out.size_is_constant_0 = size[0].id != 0;
 
     spvc_resources resources = nullptr;
-    spvc_compiler_create_shader_resources(compiler, &resources);
+    check(spvc_compiler_create_shader_resources(compiler, &resources));
     const spvc_reflected_resource* list = nullptr;
     size_t count = 0;
-    spvc_resources_get_resource_list_for_type(resources, SPVC_RESOURCE_TYPE_PUSH_CONSTANT, &list, &count);
+    check(spvc_resources_get_resource_list_for_type(resources, SPVC_RESOURCE_TYPE_PUSH_CONSTANT, &list, &count));
     if (count) {
         size_t bytes = 0;
-        spvc_compiler_get_declared_struct_size(compiler, spvc_compiler_get_type_handle(compiler, list[0].base_type_id), &bytes);
+        check(spvc_compiler_get_declared_struct_size(compiler, spvc_compiler_get_type_handle(compiler, list[0].base_type_id), &bytes));
         out.push_constant_bytes = uint32_t(bytes);
     }
-    spvc_context_destroy(context);
     return out;
 }
 

@@ -11,6 +11,7 @@
 #include "scenes/import/import.hpp"
 #include "tools/arguments.hpp"
 #include "tools/commands.hpp"
+#include "tools/message.hpp"
 #include "tools/output_file.hpp"
 #include "tools/progress.hpp"
 
@@ -83,7 +84,7 @@ void run(const Options& options) {
     progress.show("reading", 0);
     const Scene scene = scenes::import_scene(options.in, options.import, options.seed);
     progress.clear();
-    for (const std::string& warning : scene.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+    for (const std::string& warning : scene.warnings) say("warning", warning);
     if (scene.instances.empty()) throw InputError(options.in + ": there is nothing in it that could be rendered; give a file with triangles");
     progress.show("writing", 0.5);
     OutputFile file(options.out);

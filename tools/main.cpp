@@ -1,13 +1,18 @@
 // The program: its subcommands, and the one place where errors become messages and exit statuses (spec, section 5).
 #include <CLI/CLI.hpp>
 
-#include <algorithm>
+#include <unistd.h>
+
 #include <cstdio>
+#include <cstdlib>
+#include <exception>
 #include <new>
 #include <string>
+#include <string_view>
 
 #include "engine/error.hpp"
 #include "tools/commands.hpp"
+#include "tools/message.hpp"
 #include "tools/output_file.hpp"
 #include "tools/revision.hpp"
 
@@ -16,12 +21,9 @@ namespace {
 
 constexpr int bad_usage = 2, no_resources = 3;
 
-// One sentence on one line, whatever file names or libraries put into it.
-int fail(int status, std::string message) {
-    std::ranges::replace_if(message, [](unsigned char c) { return c < ' ' || c == 0x7f; }, ' ');
-    while (message.ends_with('.') || message.ends_with(' ')) message.pop_back();
+int fail(int status, std::string_view message) {
     std::fflush(stdout);
-    std::fprintf(stderr, "error: %s\n", message.c_str());
+    say("error", message);
     return status;
 }
 
@@ -45,20 +47,44 @@ int run(int argc, char** argv) {
     add_info(app);
     try {
         app.parse(argc, argv);
-        if (app.get_subcommands().empty()) {
-            std::fputs(app.help().c_str(), stdout);
-            return fail(bad_usage, "no subcommand is given; choose one of those above");
-        }
-        if (std::fflush(stdout) != 0) throw InputError("cannot write to standard output; check where it goes");
-        return 0;
     } catch (const CLI::ParseError& e) {
         return parse_failed(app, e);
+    }
+    if (app.get_subcommands().empty()) {
+        std::fputs(app.help().c_str(), stdout);
+        return fail(bad_usage, "no subcommand is given; choose one of those above");
+    }
+    if (std::fflush(stdout) != 0) throw InputError("cannot write to standard output; check where it goes");
+    return 0;
+}
+
+constexpr std::string_view no_memory = "the machine's memory is used up; lower --size, --vpls or --samples, or give a smaller scene";
+
+// For what is thrown where nothing may be, as by JSON's destructor, which takes memory.
+[[noreturn]] void terminated() {
+    remove_temporaries();
+    try {
+        throw;
+    } catch (const std::bad_alloc&) {
+        say("error", no_memory);
+        _exit(no_resources);
+    } catch (...) {
+    }
+    std::abort();
+}
+
+// Takes no memory itself where an error may mean that there is none.
+int run_and_report(int argc, char** argv) {
+    try {
+        return run(argc, argv);
     } catch (const Error& e) {
         return fail(e.exit_status(), e.what());
     } catch (const std::bad_alloc&) {
-        return fail(no_resources, "the machine's memory is used up; lower --size, --vpls or --samples, or give a smaller scene");
+        return fail(no_resources, no_memory);
     } catch (const std::exception& e) {
-        return fail(no_resources, std::string("something unforeseen went wrong (") + e.what() + "); please report it");
+        char text[1024];
+        std::snprintf(text, sizeof text, "something unforeseen went wrong (%s); please report it", e.what());
+        return fail(no_resources, text);
     }
 }
 
@@ -67,5 +93,6 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
     myriad::tools::remove_temporaries_on_signal();
-    return myriad::tools::run(argc, argv);
+    std::set_terminate(myriad::tools::terminated);
+    return myriad::tools::run_and_report(argc, argv);
 }

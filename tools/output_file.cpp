@@ -26,6 +26,7 @@ namespace fs = std::filesystem;
 
 struct Slot {
     std::atomic<bool> taken, live;
+    std::atomic<pid_t> owner;  // a forked process has the registry, but not the files
     char path[PATH_MAX];
 };
 static_assert(std::atomic<bool>::is_always_lock_free);
@@ -37,6 +38,7 @@ int enter(const std::string& path) {
     for (size_t i = 0; i < slots.size(); ++i) {
         if (slots[i].taken.exchange(true)) continue;
         std::memcpy(slots[i].path, path.c_str(), path.size() + 1);
+        slots[i].owner = getpid();
         slots[i].live = true;
         return static_cast<int>(i);
     }
@@ -55,10 +57,15 @@ bool entered(const std::string& path) {
     return false;
 }
 
-extern "C" void on_signal(int signal) {  // async-signal-safe: unlink and _exit only
-    for (const Slot& slot : slots)
-        if (slot.live) unlink(slot.path);
+// Async-signal-safe, as everything in a handler must be.
+extern "C" void on_signal(int signal) {
+    remove_temporaries();
     _exit(128 + signal);
+}
+
+extern "C" void on_crash(int signal) {  // the handler is gone by now, so that the crash goes its way
+    remove_temporaries();
+    raise(signal);
 }
 
 // ----
@@ -179,15 +186,24 @@ void write_text(const fs::path& path, std::string_view text) {
 
 void require_writable(const fs::path& path) { OutputFile probe(path); }
 
+void remove_temporaries() noexcept {
+    for (const Slot& slot : slots)
+        if (slot.live && slot.owner == getpid()) unlink(slot.path);
+}
+
 void remove_temporaries_on_signal() {
-    for (int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    signal(SIGXFSZ, SIG_IGN);  // so that a write beyond `ulimit -f` is an error and not the end
+    const auto handle = [](int signal, void (*handler)(int), int flags) {
         struct sigaction old {}, action {};
         sigaction(signal, nullptr, &old);
-        if (old.sa_handler == SIG_IGN) continue;
-        action.sa_handler = on_signal;
+        if ((old.sa_flags & SA_SIGINFO) || old.sa_handler != SIG_DFL) return;  // the parent ignores it, or a sanitiser has it
+        action.sa_handler = handler;
+        action.sa_flags = flags;
         sigfillset(&action.sa_mask);
         sigaction(signal, &action, nullptr);
-    }
+    };
+    for (int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGXCPU}) handle(signal, on_signal, 0);
+    for (int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) handle(signal, on_crash, SA_RESETHAND);
 }
 
 }  // namespace myriad::tools

@@ -47,8 +47,12 @@ void write_text(const std::filesystem::path& path, std::string_view text);
 // InputError when an OutputFile could not be opened there. For asking before an hour of rendering, not after it.
 void require_writable(const std::filesystem::path& path);
 
-// From now on SIGINT, SIGTERM and SIGHUP remove the open temporaries of this process and end it with 128 + signal
-// (130, 143, 129). Signals that the parent ignores (nohup) stay ignored. Call once, from main.
+// The open temporaries of this process are no more: for an end without destructors. Safe in a signal handler.
+void remove_temporaries() noexcept;
+
+// From now on SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE and SIGXCPU remove the open temporaries of this process and end it with
+// 128 + signal (130, 143, 129 …), a crash removes them too and stays one, and a file that grows too large (`ulimit -f`) is an
+// error like a full disk. Signals that the parent ignores (nohup) stay ignored. Call once, from main.
 void remove_temporaries_on_signal();
 
 }  // namespace myriad::tools

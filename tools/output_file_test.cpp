@@ -198,7 +198,28 @@ TEST_P(output_file_signals, leave_no_temporary) {
     EXPECT_EQ(bytes_of(folder / "a"), "old");
 }
 
-INSTANTIATE_TEST_SUITE_P(each, output_file_signals, testing::Values(SIGINT, SIGTERM, SIGHUP));
+INSTANTIATE_TEST_SUITE_P(each, output_file_signals, testing::Values(SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGXCPU));
+
+// A crash, and a fork that crashes: whose files they are, he removes them.
+TEST(output_file, a_crash_leaves_no_temporary) {
+    for (int sent : {SIGSEGV, SIGABRT}) {
+        const TempFolder folder;
+        const pid_t child = fork();
+        if (child == 0) {
+            for (int signal : {SIGSEGV, SIGABRT}) ::signal(signal, SIG_DFL);  // a sanitiser's
+            remove_temporaries_on_signal();
+            OutputFile a(folder / "a");
+            if (fork() == 0) raise(sent);
+            wait(nullptr);
+            if (folder.names().size() != 1) _exit(1);
+            raise(sent);
+        }
+        int status = 0;
+        waitpid(child, &status, 0);
+        EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == sent) << "it stays a crash";
+        EXPECT_EQ(folder.names(), Names());
+    }
+}
 
 TEST(output_file, ignored_signals_stay_ignored) {  // nohup
     EXPECT_EQ(status_of_child([] {

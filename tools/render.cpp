@@ -10,6 +10,7 @@
 #include "tools/commands.hpp"
 #include "tools/exposure.hpp"
 #include "tools/exr.hpp"
+#include "tools/message.hpp"
 #include "tools/output_file.hpp"
 #include "tools/png.hpp"
 #include "tools/progress.hpp"
@@ -34,7 +35,7 @@ Loaded load(const RenderOptions& options, Progress& progress) {
     loaded.camera = scenes::pick_camera(loaded.scene, loaded.triangles, options.camera);
     if (const std::string unshaded = passes::unshaded(loaded.scene); !unshaded.empty()) loaded.scene.warnings.push_back(unshaded);
     progress.clear();
-    for (const std::string& warning : loaded.scene.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+    for (const std::string& warning : loaded.scene.warnings) say("warning", warning);
     return loaded;
 }
 

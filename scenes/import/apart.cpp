@@ -90,7 +90,7 @@ uint64_t address_space() {  // bytes of it that this process has
 void confine(const ApartLimits& limits, pid_t parent) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != parent) _exit(1);  // it died before that
-    for (int signal : {SIGINT, SIGTERM, SIGHUP}) ::signal(signal, SIG_DFL);  // the temporaries are the parent's to remove
+    for (int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGXCPU}) ::signal(signal, SIG_DFL);  // the program's handlers are the parent's
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_CPU, limits.seconds);
     if (sanitized) return;
