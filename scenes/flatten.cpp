@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include <unistd.h>
+
 #include "engine/error.hpp"
 #include "scenes/scene.hpp"
 #include "scenes/sharing.hpp"
@@ -179,6 +181,18 @@ void reserve(Triangles& out, const Attributes& attributes, size_t vertices, size
     out.triangles.reserve(triangles);
 }
 
+// A file of a megabyte can place a mesh a hundred thousand times, and where instances cannot be shared each is written out. More
+// than the machine has is refused before the system has to end the program for it.
+void require_memory(const Attributes& attributes, size_t vertices, size_t triangles) {
+    const uint64_t vertex = 2 * sizeof(glm::vec3) + sizeof(glm::vec2) + (attributes.colors ? sizeof(glm::vec4) : 0) +
+                            (attributes.texcoords1 ? sizeof(glm::vec2) : 0) + (attributes.tangents ? sizeof(glm::vec4) : 0);
+    const uint64_t needed = vertex * vertices + sizeof(glm::uvec4) * triangles;
+    const uint64_t machine = uint64_t(sysconf(_SC_PHYS_PAGES)) * uint64_t(sysconf(_SC_PAGESIZE));
+    if (needed > machine)
+        throw OutOfMemory("the scene's instances take " + std::to_string(needed >> 30) + " GiB written out, and the machine has " +
+                          std::to_string(machine >> 30) + "; give fewer instances or coarser meshes.");
+}
+
 // Bounds over what the triangles use: an unusable vertex was parked at the origin.
 void find_bounds(Triangles& out, const std::vector<Placement>& placements) {
     glm::vec3 lo(std::numeric_limits<float>::infinity()), hi(-lo);
@@ -219,6 +233,7 @@ Triangles flatten(Scene& scene, Sharing sharing) {
     }
     if (vertices >= none || in_the_world >= none / 3)
         throw InputError("the scene has more than 2^32 vertices; give fewer instances or coarser meshes.");
+    require_memory(attributes, vertices, triangles);
     reserve(out, attributes, vertices, triangles);
 
     Flattener flattener(out, attributes, defects);

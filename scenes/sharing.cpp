@@ -56,7 +56,9 @@ bool can_share(const MeshUse& mesh, const glm::mat4& to_world) {
         }
         if (!(reach <= sharing_most_distortion * size)) return false;
     }
-    return largest < 1e12 && largest > 1e-12;
+    // In either space what is farther is dropped, and must be the same triangles whether they are shared or not; a little nearer,
+    // for coordinates are computed in 32 bits there.
+    return std::max({largest, most.x, most.y, most.z}) < 0.999 * double(farthest) && largest > 1e-12;
 }
 
 SharingPlan plan_sharing(const Scene& scene, Sharing sharing) {

@@ -23,8 +23,8 @@ struct SharingPlan {
 };
 SharingPlan plan_sharing(const Scene& scene, Sharing sharing);
 
-// Whether rays can be traced in the mesh's own space: the transform is affine and regular, and what is rounded off world
-// coordinates is small beside the mesh (sharing_most_distortion).
+// Whether rays can be traced in the mesh's own space: the transform is affine and regular, what is rounded off world
+// coordinates is small beside the mesh (sharing_most_distortion), and nothing is beyond `farthest` in either space.
 bool can_share(const MeshUse& mesh, const glm::mat4& to_world);
 
 }  // namespace myriad::scenes

@@ -140,6 +140,14 @@ TEST(Sharing, defects_are_dropped_alike) {
     const Triangles shared = flatten(scene, Sharing::always), flat = flatten(scene, Sharing::never);
     EXPECT_EQ(shared.triangles.size(), 156u);
     EXPECT_EQ(corners(shared), corners(flat));
+    // Beyond `farthest` in the world, or in the mesh; near it, where rounding decides.
+    for (const float size : {1e8f, 0.4e9f, 0.9989e9f, 0.99999994e9f, 1e9f, 1.5e9f, 1e11f}) {
+        Scene large = scene_of({field(9, true)}), small = large;
+        for (const float scale : {1.0f, 0.9f}) large.instances.push_back({0, glm::scale(mat4(1), vec3(scale * size))});
+        for (vec3& p : small.meshes[0].primitives[0].positions) p *= size;
+        for (const float scale : {1.0f, 0.9f}) small.instances.push_back({0, glm::scale(mat4(1), vec3(scale / size))});
+        for (Scene* far : {&large, &small}) EXPECT_EQ(corners(flatten(*far, Sharing::always)), corners(flatten(*far, Sharing::never))) << size;
+    }
     Scene empty = scene_of({Mesh{}});
     empty.instances = {{0, mat4(1)}, {0, mat4(1)}};
     EXPECT_EQ(flatten(empty, Sharing::always).count(), 0u);

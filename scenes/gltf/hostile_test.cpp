@@ -117,6 +117,24 @@ TEST_F(Hostile, AmplificationIsBounded) {
     expect_refused({"out of all proportion to the file"});
 }
 
+// A mesh placed so often that its instances, which are flat and cannot be shared, would take 130 GB.
+TEST_F(Hostile, InstancesThatWouldFillTheMemory) {
+    if (uint64_t(sysconf(_SC_PHYS_PAGES)) * uint64_t(sysconf(_SC_PAGESIZE)) > 100ull << 30) GTEST_SKIP() << "this machine has the memory";
+    std::vector<uint32_t> many(3 * 300'000);
+    for (size_t i = 0; i < many.size(); ++i) many[i] = uint32_t(i % 4);
+    primitive()["indices"] = indices<uint32_t>(u32, many);
+    doc["nodes"] = json::array();
+    doc["scenes"][0]["nodes"] = json::array();
+    for (int i = 0; i < 4000; ++i) doc["nodes"].push_back({{"mesh", 0}, {"scale", {1, 1, 0}}}), doc["scenes"][0]["nodes"].push_back(i);
+    Scene scene = read();
+    try {
+        flatten(scene);
+        ADD_FAILURE() << "accepted";
+    } catch (const OutOfMemory& e) {
+        EXPECT_NE(std::string(e.what()).find("GiB written out"), std::string::npos);
+    }
+}
+
 std::string png_header(uint32_t width, uint32_t height, int depth = 8, int type = 6) {
     std::string data = "IHDR";
     for (const uint32_t n : {width, height})
