@@ -74,7 +74,7 @@ private:
         if (type == "chlist") return channels(bytes);
         if (type == "stringvector") return strings(bytes);
         if (type == "floatvector") return bytes % 4 == 0;
-        if (type == "idmanifest") return bytes >= 4;
+        if (type == "idmanifest") return false;  // 3.1.5 reads four bytes more than there are; it belongs to deep images
         if (type == "preview") {
             uint32_t width = 0, height = 0;
             return word(width) && word(height) && bytes >= 8 && uint64_t(width) * height == (bytes - 8) / 4 && bytes % 4 == 0;

@@ -25,7 +25,7 @@ std::string listed(const std::vector<std::string>& names) {
 Item::Item(const json& value, std::string place, std::initializer_list<const char*> keys) : json_(value), place_(std::move(place)) {
     if (!json_.is_object()) fail("it is not an object", "write { … }");
     for (const auto& [key, ignored] : json_.items())
-        if (std::ranges::none_of(keys, [&](const char* known) { return key == known; }))
+        if (std::ranges::find(keys, std::string_view(key)) == keys.end())
             fail("\"" + key.substr(0, 60) + "\" is unknown", "known are " + listed({keys.begin(), keys.end()}));
     // A name makes the place easier to find.
     if (const json* name = find("name"); name && name->is_string()) place_ += " \"" + name->get<std::string>().substr(0, 60) + "\"";

@@ -9,6 +9,7 @@
 #include <draco/compression/encode.h>
 #include <draco/mesh/triangle_soup_mesh_builder.h>
 #include <jpeglib.h>
+#include <meshoptimizer.h>
 #include <nlohmann/json.hpp>
 #include <png.h>
 
@@ -125,6 +126,152 @@ std::vector<std::string> draco_streams() {
             draco_sheet(::draco::MESH_SEQUENTIAL_ENCODING, 10, false)};
 }
 
+// ---- meshopt
+
+struct Stream {
+    std::string mode, filter, bytes;
+    int stride = 0, count = 0;
+};
+
+std::vector<Stream> meshopt_streams() {
+    std::vector<unsigned> triangles;
+    std::vector<std::array<float, 4>> vertices;
+    for (unsigned i = 0; i < 60; ++i) triangles.insert(triangles.end(), {i, i + 1, i + 2}), vertices.push_back({float(i), float(i % 7), 0.5f, 1});
+    vertices.resize(62);
+    std::vector<Stream> out;
+    const auto add = [&](const char* mode, const char* filter, int stride, size_t count, size_t bound, const auto& encode) {
+        std::string bytes(bound, '\0');
+        bytes.resize(encode(reinterpret_cast<unsigned char*>(bytes.data()), bound));
+        out.push_back({mode, filter, bytes, stride, int(count)});
+    };
+    const size_t n = vertices.size(), m = triangles.size();
+    for (const char* filter : {"NONE", "EXPONENTIAL"})
+        add("ATTRIBUTES", filter, 16, n, meshopt_encodeVertexBufferBound(n, 16), [&](auto* to, size_t size) { return meshopt_encodeVertexBuffer(to, size, vertices.data(), n, 16); });
+    for (const char* filter : {"OCTAHEDRAL", "QUATERNION"})
+        add("ATTRIBUTES", filter, 8, 2 * n, meshopt_encodeVertexBufferBound(2 * n, 8), [&](auto* to, size_t size) { return meshopt_encodeVertexBuffer(to, size, vertices.data(), 2 * n, 8); });
+    add("TRIANGLES", "NONE", 4, m, meshopt_encodeIndexBufferBound(m, n), [&](auto* to, size_t size) { return meshopt_encodeIndexBuffer(to, size, triangles.data(), m); });
+    add("INDICES", "NONE", 2, m, meshopt_encodeIndexSequenceBound(m, n), [&](auto* to, size_t size) { return meshopt_encodeIndexSequence(to, size, triangles.data(), m); });
+    return out;
+}
+
+std::vector<std::string> meshopt_inputs() {
+    std::vector<std::string> out;
+    for (const Stream& s : meshopt_streams()) {
+        const int mode = s.mode == "ATTRIBUTES" ? 0 : s.mode == "TRIANGLES" ? 1 : 2;
+        const int filter = s.filter == "NONE" ? 0 : s.filter == "OCTAHEDRAL" ? 1 : s.filter == "QUATERNION" ? 2 : 3;
+        out.push_back(std::string{char(mode), char(filter), char(s.stride), char(s.count % 256), char(s.count / 256)} + s.bytes);
+    }
+    return out;
+}
+
+// ---- what convert reads
+
+std::string words(std::initializer_list<uint32_t> list) { return {reinterpret_cast<const char*>(list.begin()), 4 * list.size()}; }
+
+std::string floats(std::initializer_list<float> list) { return {reinterpret_cast<const char*>(list.begin()), 4 * list.size()}; }
+
+// A map of one square, and one patch.
+std::string ibsp_map() {
+    const std::string entities = "{\n\"classname\" \"worldspawn\"\n}\n{\n\"classname\" \"light\"\n\"origin\" \"0 0 64\"\n\"light\" \"300\"\n}\n"
+                                 "{\n\"classname\" \"info_player_deathmatch\"\n\"origin\" \"8 8 24\"\n\"angle\" \"90\"\n}\n";
+    std::string shader = "textures/base_floor/tile", vertices;
+    shader.resize(64);
+    shader += words({0, 1});
+    for (int i = 0; i < 13; ++i)
+        vertices += floats({float(i % 3) * 32, float(i / 3) * 32, float(i % 2) * 9, 0.5f, 0.25f, 0, 0, 0, 0, 1}) + words({~0u});
+    std::string faces = words({0, 0, 1, 0, 4, 0, 6}) + std::string(19 * 4, '\0');
+    faces += words({0, 0, 2, 4, 9, 0, 0}) + std::string(17 * 4, '\0') + words({3, 3});
+    const std::string models = words({0, 0, 0, 0, 0, 0, 0, 2, 0, 0}), corners = words({0, 1, 2, 0, 2, 3});
+    std::string out = "IBSP" + words({46}) + std::string(17 * 8, '\0');
+    for (const auto& [lump, bytes] : {std::pair<size_t, const std::string&>(0, entities), {1, shader}, {7, models}, {10, vertices}, {11, corners}, {13, faces}}) {
+        out.replace(8 + 8 * lump, 8, words({uint32_t(out.size()), uint32_t(bytes.size())}));
+        out += bytes;
+    }
+    return out;
+}
+
+std::string embree_strands() {
+    const std::string xml = "<?xml version=\"1.0\"?><scene><assign type=\"scene\" id=\"a\"><RoundLineSegments><material><code>\"Hair\"</code><parameters>"
+                            "<float3 name=\"Kr\">0.1 0.2 0.3</float3></parameters></material><indices ofs=\"0\" size=\"3\"/><positions ofs=\"12\" size=\"5\"/>"
+                            "</RoundLineSegments></assign><Group><ref id=\"a\"/></Group></scene>";
+    return xml + '\0' + words({0, 1, 3}) + floats({0, 0, 0, 0.1f, 0, 1, 0, 0.1f, 0.5f, 2, 0, 0.05f, 3, 0, 0, 0.2f, 4, 0, 0, 0.1f});
+}
+
+std::vector<std::string> for_assimp() {
+    using namespace std::string_literals;
+    return {"\0mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0 0\nvn 0 0 1\nusemtl red\ng part\nf 1/1/1 2/1/1 3/1/1\nf 2 4 3\n"s,
+            "\1ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nelement face 1\n"
+            "property list uchar int vertex_indices\nend_header\n0 0 0 255\n1 0 0 9\n0 1 0 7\n3 0 1 2\n"s,
+            "\1ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
+            "property list uchar int vertex_indices\nend_header\n"s + floats({0, 0, 0, 1, 0, 0, 0, 1, 0}) + '\3' + words({0, 1, 2}),
+            "\2solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n"s,
+            "\2"s + std::string(80, 'b') + words({1}) + floats({0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0}) + "\0\0"s,
+            "\3<?xml version=\"1.0\"?><COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" version=\"1.4.1\"><asset><unit meter=\"0.01\"/><up_axis>Z_UP</up_axis>"
+            "</asset><library_geometries><geometry id=\"g\"><mesh><source id=\"p\"><float_array id=\"f\" count=\"9\">0 0 0 1 0 0 0 1 0</float_array><technique_common>"
+            "<accessor source=\"#f\" count=\"3\" stride=\"3\"><param name=\"X\" type=\"float\"/><param name=\"Y\" type=\"float\"/><param name=\"Z\" type=\"float\"/></accessor>"
+            "</technique_common></source><vertices id=\"v\"><input semantic=\"POSITION\" source=\"#p\"/></vertices><triangles count=\"1\"><input semantic=\"VERTEX\" "
+            "source=\"#v\" offset=\"0\"/><p>0 1 2</p></triangles></mesh></geometry></library_geometries><library_visual_scenes><visual_scene id=\"s\"><node>"
+            "<instance_geometry url=\"#g\"/></node></visual_scene></library_visual_scenes><scene><instance_visual_scene url=\"#s\"/></scene></COLLADA>"s};
+}
+
+std::vector<std::string> ply_files() {
+    using namespace std::string_literals;
+    const std::string everything =
+        "element vertex 4\ncomment four corners\nproperty float x\nproperty float y\nproperty double z\nproperty float nx\nproperty float ny\nproperty float nz\n"
+        "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float u\nproperty float v\nproperty list uchar short extra\n"
+        "element face 2\nproperty list uchar int vertex_indices\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n";
+    std::string text = "ply\nformat ascii 1.0\n" + everything;
+    for (int i = 0; i < 4; ++i) text += std::to_string(i % 2) + " " + std::to_string(i / 2) + ".5 0 0 0 1 255 128 0 0.5 1 2 7 8\n";
+    text += "4 0 1 3 2\n3 0 1 2\n5 0 1 2 -1 3\n";
+    std::vector<std::string> out = {for_assimp()[1].substr(1), for_assimp()[2].substr(1), text};
+    std::string big = "ply\nformat binary_big_endian 1.0\nelement vertex 3\nproperty short x\nproperty ushort y\nproperty char z\nelement face 1\n"
+                      "property list uchar ushort vertex_index\nend_header\n"s;
+    big += "\0\1\0\1\1\0\2\0\1\2\0\1\0\3\3\3\0\0\0\1\0\2"s;
+    out.push_back(big);
+    return out;
+}
+
+// Small pictures, put together by hand: no library here writes these formats.
+std::vector<std::string> textures() {
+    using namespace std::string_literals;
+    const auto u16 = [](int v) { return std::string{char(v), char(v >> 8)}; };
+    const auto u32 = [](uint32_t v) { return words({v}); };
+    const std::string pixels = "\0\x40\x80\xff\x20\x10\0\x7f\xff\x01\x02\x03"s;  // 2 x 2 of three bytes
+    const std::string tga = "\0\0\2\0\0\0\0\0\0\0\0\0"s + u16(2) + u16(2) + "\x18\0"s + pixels;
+    const std::string packed = "\0\0\x0a\0\0\0\0\0\0\0\0\0"s + u16(3) + u16(2) + "\x18\x20"s + "\x82\1\2\3\2" + pixels.substr(0, 9);
+    const std::string mapped = "\0\1\1\0\0\2\0\x18\0\0\0\0"s + u16(2) + u16(2) + "\x8\0"s + pixels.substr(0, 6) + "\0\1\1\0"s;
+    const std::string bmp = "BM" + u32(70) + u32(0) + u32(54) + u32(40) + u32(2) + u32(2) + u16(1) + u16(24) + u32(0) + u32(16) + u32(0) + u32(0) + u32(0) + u32(0) +
+                            pixels.substr(0, 6) + "\0\0"s + pixels.substr(6) + "\0\0"s;
+    const std::string masked = "BM" + u32(0) + u32(0) + u32(70) + u32(56) + u32(2) + u32(uint32_t(-2)) + u16(1) + u16(32) + u32(3) + u32(16) + u32(0) + u32(0) + u32(0) +
+                               u32(0) + u32(0xff0000) + u32(0xff00) + u32(0xff) + u32(0xff000000) + pixels + pixels.substr(0, 4);
+    const std::string gif = "GIF89a" + u16(2) + u16(2) + "\x80\0\0"s + pixels.substr(0, 6) + "!\xf9\4\1\0\0\1\0"s + "," + u16(0) + u16(0) + u16(2) + u16(2) + "\0"s +
+                            "\2\3\x44\2\5\0;"s;
+    const auto big16 = [](int v) { return std::string{char(v >> 8), char(v)}; };
+    const auto big32 = [](uint32_t v) { return std::string{char(v >> 24), char(v >> 16), char(v >> 8), char(v)}; };
+    const std::string psd_head = "8BPS" + big16(1) + std::string(6, '\0') + big16(3) + big32(2) + big32(2) + big16(8) + big16(3) + big32(0) + big32(0) + big32(0);
+    std::string rows;
+    for (int i = 0; i < 6; ++i) rows += big16(3);
+    const std::string psd = psd_head + big16(0) + pixels, psd_packed = psd_head + big16(1) + rows + "\1\7\x9\1\4\5\1\1\2\1\3\4\1\x9\x8\1\6\6"s;
+    return {tga, packed, mapped, bmp, masked, gif, psd, psd_packed, "P6\n# four\n2 2\n255\n" + pixels, "P5 2 2 65535\n" + pixels.substr(0, 8)};
+}
+
+std::vector<std::string> recipes() {
+    json all = {{"recipe", 1}, {"background", {0.1, 0.2, 0.3}}};
+    all["materials"] = {{"oak", {{"base_color", {0.3, 0.2, 0.1}}, {"roughness", 0.5}, {"texture", "picture.png"}}}, {"glow", {{"emissive", {1, 2, 3}}, {"alpha", "mask"}}}};
+    all["room"] = {{"size", {4, 3, 4}}, {"floor", "oak"}, {"walls", "glow"}, {"open", {"front"}}, {"at", {0, 0, 1}}};
+    all["parts"] = {{{"name", "one"}, {"file", "part.glb"}, {"fit", {{"height", 0.5}}}, {"anchor", "bottom"}, {"materials", {{"*", "oak"}, {"rich", {{"metallic", 0.5}, {"texture", ""}}}}},
+                      {"without", {"t*o"}}, {"lights", true}, {"cameras", true}},
+                    {{"name", "two"}, {"file", "part.ply"}, {"unit", 0.01}, {"up", "z"}, {"on", "one"}, {"rotate", {90, 0, 10}},
+                     {"places", {{{"at", {0.3, 0, 0.1}}, {"turn", 45}, {"scale", 2}}, {{"at", {-1, 0, 0}}}}}},
+                    {{"file", "builtin:cornell?cells=1"}, {"scale", 0.5}, {"anchor", "middle"}, {"at", {1, 2, 3}}, {"turn", 30}, {"only", {"*"}}, {"crease", 30}, {"colors", "linear"}}};
+    all["boxes"] = {{{"size", {1, 1, 1}}, {"at", {0, 1, 0}}, {"turn", 20}, {"material", "oak"}, {"name", "box"}}};
+    all["panels"] = {{{"at", {-1, 1, 0}}, {"size", {1, 1}}, {"toward", {0, 0, 0}}, {"radiance", {8, 9, 10}}}};
+    all["lights"] = {{{"type", "spot"}, {"at", {0, 2, 0}}, {"intensity", {20, 18, 14}}, {"inner", 20}, {"outer", 50}}, {{"type", "sun"}, {"toward", {1, -1, 0}}, {"intensity", {1, 1, 1}}},
+                     {{"type", "point"}, {"at", {0, 1, 1}}, {"intensity", {1, 1, 1}}}};
+    all["cameras"] = {{{"name", "a"}, {"eye", {0, 1, 2}}, {"target", {0, 1, 0}}, {"yfov", 50}}, {{"frame", "two"}, {"from", {1, 1, 1}}}, {{"frame", "all"}, {"from", {0, 0, 1}}}};
+    return {all.dump(), R"({"recipe": 1, /* a */ "parts": [{"file": "part.ply"}]} // b)"};
+}
+
 // ---- glTF
 
 // A bit of everything that our writer writes.
@@ -215,6 +362,30 @@ std::string compressed_by_draco() {
     return doc.dump() + '\0' + stream;
 }
 
+// Views packed by meshopt, and many instances of one mesh.
+std::string compressed_by_meshopt() {
+    const std::vector<Stream> streams = meshopt_streams();
+    const Stream &vertices = streams[0], &triangles = streams[4];
+    json doc = {{"asset", {{"version", "2.0"}}}, {"scene", 0}, {"scenes", {{{"nodes", {0}}}}}};
+    doc["extensionsRequired"] = doc["extensionsUsed"] = {"EXT_meshopt_compression", "EXT_mesh_gpu_instancing"};
+    doc["buffers"] = {{{"byteLength", vertices.bytes.size() + triangles.bytes.size()}},
+                      {{"byteLength", 4096}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}};
+    size_t offset = 0;
+    for (const Stream* s : {&vertices, &triangles}) {
+        doc["bufferViews"].push_back({{"buffer", 1}, {"byteLength", s->count * s->stride},
+                                      {"extensions", {{"EXT_meshopt_compression", {{"buffer", 0}, {"byteOffset", offset}, {"byteLength", s->bytes.size()}, {"byteStride", s->stride},
+                                                                                   {"count", s->count}, {"mode", s->mode}, {"filter", s->filter}}}}}});
+        offset += s->bytes.size();
+    }
+    doc["bufferViews"][0]["byteStride"] = 16;
+    doc["accessors"] = {{{"bufferView", 0}, {"componentType", 5126}, {"type", "VEC3"}, {"count", vertices.count}},
+                        {{"bufferView", 1}, {"componentType", 5125}, {"type", "SCALAR"}, {"count", triangles.count}},
+                        {{"bufferView", 0}, {"componentType", 5126}, {"type", "VEC4"}, {"count", 5}}};
+    doc["meshes"] = {{{"primitives", {{{"indices", 1}, {"attributes", {{"POSITION", 0}}}}}}}};
+    doc["nodes"] = {{{"mesh", 0}, {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", {{"ROTATION", 2}}}}}}}}};
+    return doc.dump() + '\0' + vertices.bytes + triangles.bytes;
+}
+
 }  // namespace
 
 std::vector<std::string> exr_seeds();  // exr_seeds.cpp
@@ -223,8 +394,15 @@ std::vector<std::string> seeds(const std::string& target) {
     if (target == "picture") return pictures();
     if (target == "draco") return draco_streams();
     if (target == "exr") return exr_seeds();
+    if (target == "meshopt") return meshopt_inputs();
+    if (target == "ibsp") return {ibsp_map()};
+    if (target == "embree") return {embree_strands()};
+    if (target == "assimp") return for_assimp();
+    if (target == "ply") return ply_files();
+    if (target == "texture") return textures();
+    if (target == "recipe") return recipes();
     const std::string glb = scenes::glb_bytes(variety());
-    return {glb, taken_apart(glb), by_hand(), compressed_by_draco()};
+    return {glb, taken_apart(glb), by_hand(), compressed_by_draco(), compressed_by_meshopt()};
 }
 
 }  // namespace myriad::fuzz

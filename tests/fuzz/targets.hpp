@@ -15,12 +15,21 @@ void gltf(const uint8_t* data, size_t size);
 void picture(const uint8_t* data, size_t size);  // PNG, JPEG
 void draco(const uint8_t* data, size_t size);    // a Draco stream
 void exr(const uint8_t* data, size_t size);      // an EXR file, as `myriad compare` reads it
+// Five bytes say how (mode, filter, stride, count), the rest is a stream of EXT_meshopt_compression.
+void meshopt(const uint8_t* data, size_t size);
+void ibsp(const uint8_t* data, size_t size);     // a map of Quake III; what `myriad convert` would write of it is written
+void embree(const uint8_t* data, size_t size);   // XML, and after the first zero byte the numbers, gzipped or not
+void assimp(const uint8_t* data, size_t size);   // the first byte says which ending the file has
+void ply(const uint8_t* data, size_t size);
+void texture(const uint8_t* data, size_t size);  // TGA, BMP, GIF, PSD and PNM, as textures of imported scenes come
+void recipe(const uint8_t* data, size_t size);   // beside a few parts that it may name
 
 struct Target {
     const char* name;
     void (*run)(const uint8_t* data, size_t size);
 };
-inline constexpr Target targets[] = {{"gltf", gltf}, {"picture", picture}, {"draco", draco}, {"exr", exr}};
+inline constexpr Target targets[] = {{"gltf", gltf},     {"picture", picture}, {"draco", draco}, {"exr", exr},         {"meshopt", meshopt}, {"ibsp", ibsp},
+                                     {"embree", embree}, {"assimp", assimp},   {"ply", ply},     {"texture", texture}, {"recipe", recipe}};
 
 // Where each target starts from: small valid inputs, made by our own writers and by the libraries' encoders. The same
 // bytes every time.
