@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <new>
 #include <set>
 
@@ -43,6 +44,13 @@ void check_extensions(const Place& place, Scene& scene) {
 
 }  // namespace
 
+FileAndChoice split_choice(const std::string& source) {
+    std::error_code error;
+    const size_t hash = source.rfind('#');
+    const bool chosen = hash != std::string::npos && !std::filesystem::exists(source, error) && std::filesystem::exists(source.substr(0, hash), error);
+    return chosen ? FileAndChoice{source.substr(0, hash), source.substr(hash + 1)} : FileAndChoice{source, ""};
+}
+
 Scene load_gltf(const std::string& path, const std::string& choice) try {
     std::string warnings;
     gltf::Document document = gltf::read_document(path, warnings);
@@ -51,7 +59,9 @@ Scene load_gltf(const std::string& path, const std::string& choice) try {
     scene.name = path;
     const Place place{model, path, "", &document};
     check_extensions(place, scene);
-    gltf::read_nodes(place, gltf::pick_scene(place, choice), scene);  // first: what no instance shows is not read
+    const int which = gltf::pick_scene(place, choice);
+    gltf::read_nodes(place, which, scene);  // first: what no instance shows is not read
+    gltf::read_background(place, which, scene);
     gltf::read_meshes(place, scene);
     gltf::read_materials(place, scene);
     if (!model.skins.empty()) scene.warnings.push_back("skins are ignored: meshes are shown in their rest pose.");

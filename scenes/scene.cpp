@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -53,11 +52,8 @@ Camera pick_camera(const Scene& scene, const Triangles& triangles, const std::st
 Scene load(const std::string& source, uint32_t seed) {
     constexpr std::string_view prefix = "builtin:";
     if (source.starts_with(prefix)) return load_builtin(source.substr(prefix.size()), seed);
-    // "file.glb#scene"; a file whose own name has a # is taken as it is.
-    std::error_code error;
-    const size_t hash = source.rfind('#');
-    const bool chosen = hash != std::string::npos && !std::filesystem::exists(source, error) && std::filesystem::exists(source.substr(0, hash), error);
-    return chosen ? load_gltf(source.substr(0, hash), source.substr(hash + 1)) : load_gltf(source);
+    const auto [path, choice] = split_choice(source);
+    return load_gltf(path, choice);
 }
 
 }  // namespace myriad::scenes

@@ -116,7 +116,7 @@ std::string footer() {
 void add_convert(CLI::App& app) {
     auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand("convert", "Other formats as .glb, which is what Myriad renders");
-    command->add_option("IN", options->in, "the scene to read")->required();
+    command->add_option("IN", options->in, "the scene to read; FILE#NAME or FILE#INDEX for another scene of a glTF file than its default")->required();
     command->add_option("OUT", options->out, "the file to write, .glb")->required();
     add_parsed(*command, "--unit", "UNIT", "", "a unit of length in IN: mm, cm, m, in, ft, or metres a unit; else what IN says or its format means",
                [options](const std::string& text) { options->import.unit = parse_unit(text); });

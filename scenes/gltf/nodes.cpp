@@ -239,4 +239,18 @@ void read_nodes(const Place& place, int which, Scene& scene) {
     Walk(place, scene).run(which < 0 ? roots_without_scene(place) : place.model.scenes[size_t(which)].nodes);
 }
 
+void read_background(const Place& place, int which, Scene& scene) {
+    if (which < 0) return;
+    const tinygltf::Scene& in = place.model.scenes[size_t(which)];
+    if (!in.extras.Has(background_extra)) return;
+    const tinygltf::Value& radiance = in.extras.Get(background_extra);
+    bool good = radiance.IsArray() && radiance.ArrayLen() == 3;
+    for (int c = 0; c < 3 && good; ++c) {
+        const double value = radiance.Get(c).IsNumber() ? radiance.Get(c).GetNumberAsDouble() : -1;
+        good = value >= 0 && value <= limits::light;
+        scene.background[c] = float(value);
+    }
+    if (!good) place.at("scene " + std::to_string(which)).fail(std::string(background_extra) + " is not three numbers from 0 to 1e18", "correct it");
+}
+
 }  // namespace myriad::scenes::gltf

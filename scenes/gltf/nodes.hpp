@@ -9,6 +9,8 @@
 namespace myriad::scenes::gltf {
 
 inline constexpr const char* lights_extension = "KHR_lights_punctual";
+// Where a scene keeps its background: three numbers in its extras, for glTF has no place for it.
+inline constexpr const char* background_extra = "myriad_background";
 inline constexpr const char* instancing_extension = "EXT_mesh_gpu_instancing";
 
 // Which of the file's scenes `choice` names: by name, or by index in decimal; the file's default where it is empty. -1 for a
@@ -18,5 +20,8 @@ int pick_scene(const Place& place, const std::string& choice);
 // Fills scene.instances, scene.cameras and scene.lights from glTF scene `which`; -1: from every node that is nobody's child.
 // Needs scene.meshes.
 void read_nodes(const Place& place, int which, Scene& scene);
+
+// Sets scene.background from glTF scene `which`, where that says one.
+void read_background(const Place& place, int which, Scene& scene);
 
 }  // namespace myriad::scenes::gltf

@@ -49,6 +49,18 @@ TEST_F(Gltf, OneOfSeveralScenes) {
     EXPECT_NE(message().find("the file has none"), std::string::npos) << message();
 }
 
+TEST_F(Gltf, ABackgroundIsThreeNumbers) {
+    square();
+    EXPECT_EQ(read().background, vec3(0));
+    json& extras = doc["scenes"][0]["extras"];
+    extras = {{"myriad_background", {0.5, 0, 3}}, {"other", 1}};
+    EXPECT_EQ(read().background, vec3(0.5f, 0, 3));
+    for (const json& bad : {json(1), json({1, 2}), json({1, 2, -1}), json({1, 2, "3"}), json({1, 2, 1e30}), json({{"r", 1}}), json({1, 2, 3, 4})}) {
+        extras["myriad_background"] = bad;
+        EXPECT_NE(refused(write()).find("scene 0: myriad_background is not three numbers"), std::string::npos) << bad;
+    }
+}
+
 TEST_F(Gltf, AFileWithAHashInItsName) {
     square();
     const std::filesystem::path path = folder / "take#1.gltf";

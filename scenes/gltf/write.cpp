@@ -15,6 +15,7 @@
 #include <png.h>
 
 #include "engine/error.hpp"
+#include "scenes/gltf/nodes.hpp"
 #include "scenes/gltf/rotation_scale.hpp"
 
 namespace myriad::scenes {
@@ -393,6 +394,11 @@ private:
         if (!nodes_.empty()) {
             scene["nodes"] = std::move(roots_);
             json_["nodes"] = std::move(nodes_);
+        }
+        const glm::vec3& background = scene_.background;
+        if (background != glm::vec3(0)) {
+            if (!finite(&background.x, 3) || glm::any(glm::lessThan(background, glm::vec3(0)))) fail("the background is negative or not finite", "correct it");
+            scene["extras"][gltf::background_extra] = numbers(background);
         }
         json_["scene"] = 0;
         json_["scenes"] = Json::array({std::move(scene)});

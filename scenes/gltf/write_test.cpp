@@ -98,6 +98,7 @@ TEST(GltfWriter, AScene) {
                             .intensity = {1, 1, 0}, .inner_cone = 0.1f, .outer_cone = 0.5f});
     scene.lights.push_back({.type = Light::Type::directional, .name = "sun", .direction = {0, 0, 1}, .intensity = vec3(5)});
     scene.lights.push_back({.name = "broken bulb"});
+    scene.background = {0.1f, 0, 12};
     expect_round_trip(scene);
     EXPECT_EQ(document(glb_bytes(scene))["meshes"].size(), 2u);
 }
@@ -246,6 +247,8 @@ TEST(GltfWriter, RefusesWhatGltfCannotHold) {
                   s.textures.push_back({.width = 1, .height = 1, .rgba = {1, 2, 3, 4}});
                   s.materials[0].base_color_texture = {0, 0, glm::mat3x2(1, 0, 0.5f, 1, 0, 0)};
               }).find("shears"), std::string::npos);
+    EXPECT_NE(with([&](Scene& s) { s.background.y = -1; }).find("background"), std::string::npos);
+    EXPECT_NE(with([&](Scene& s) { s.background.y = nan; }).find("background"), std::string::npos);
     EXPECT_NE(with([&](Scene& s) { s.textures.push_back({}); }).find("no pixels"), std::string::npos);
 }
 

@@ -18,7 +18,8 @@ namespace myriad::scenes {
 namespace {
 
 Imported read_gltf(const std::string& path, const ImportOptions&) {
-    return {.scene = load_gltf(path), .crease = 0};  // glTF says that what has no normals is flat
+    const auto [file, choice] = split_choice(path);
+    return {.scene = load_gltf(file, choice), .crease = 0};  // glTF says that what has no normals is flat
 }
 
 std::string lower(std::string text) {
@@ -63,9 +64,11 @@ Scene import_scene(const std::string& source, const ImportOptions& options, uint
         in.scene = load(source, seed);
         in.crease = 0;
     } else {
-        const Format& format = format_of(source);
+        const auto [path, choice] = split_choice(source);
+        const Format& format = format_of(path);
         std::error_code error;
-        if (!std::filesystem::is_regular_file(source, error)) throw InputError(source + ": there is no such file; give one that exists.");
+        if (format.read != read_gltf && !choice.empty()) throw InputError(source + ": only glTF has scenes to choose from; leave the # out.");
+        if (!std::filesystem::is_regular_file(path, error)) throw InputError(source + ": there is no such file; give one that exists.");
         in = format.read(source, options);
     }
     in.scene.name = source;

@@ -50,7 +50,7 @@ struct Format {
 
 const std::vector<Format>& formats();
 
-// Any file that formats() knows by its ending, or "builtin:NAME[?key=value&…]". In metres, +Y up, ready to be written.
+// Any file that formats() knows by its ending, PATH#NAME or PATH#INDEX for another scene of a glTF file than its default, or "builtin:NAME[?key=value&…]". In metres, +Y up, ready to be written.
 Scene import_scene(const std::string& source, const ImportOptions& options = {}, uint32_t seed = 1);
 
 }  // namespace myriad::scenes

@@ -408,6 +408,22 @@ TEST_F(Import, Fbx) {
 
 // ---- what is no scene
 
+TEST_F(Import, OneOfTheScenesOfAFile) {
+    const std::string path = put("two.gltf", R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"name": "a", "nodes": [0]}, {"name": "b", "nodes": [1]}],
+        "nodes": [{"mesh": 0, "translation": [1, 0, 0]}, {"mesh": 0, "translation": [2, 0, 0]}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "buffers": [{"uri": "t.bin", "byteLength": 36}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}]})");
+    const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    put("t.bin", std::string(reinterpret_cast<const char*>(corners), sizeof corners));
+    const auto x = [](const Scene& scene) { return scene.instances.at(0).to_world[3].x; };
+    EXPECT_EQ(x(import_scene(path)), 1);
+    EXPECT_EQ(x(import_scene(path + "#b")), 2);
+    EXPECT_EQ(x(import_scene(path + "#1")), 2);
+    EXPECT_THROW(import_scene(path + "#c"), InputError);
+    EXPECT_NE(refused(put("one.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n") + "#b").find("only glTF has scenes"), std::string::npos);
+}
+
 TEST_F(Import, Endings) {
     EXPECT_NE(refused(put("a.xyz", "")).find("give one of .gltf, .glb, "), std::string::npos);
     EXPECT_NE(refused((folder / "none.obj").string()).find("there is no such file"), std::string::npos);
