@@ -467,9 +467,10 @@ Imported import_recipe(const std::string& path, const ImportOptions&) {
     json document;
     try {
         document = json::parse(bytes.begin(), bytes.end(), nullptr, true, true);  // comments are allowed
-    } catch (const json::parse_error& e) {
+    } catch (const json::exception& e) {  // a number of too many digits is no parse_error
         std::string what = e.what();
-        if (const size_t at = what.find("at line"); at != std::string::npos) what = what.substr(at + 3);
+        for (const char* begin : {"at line", "number overflow"})
+            if (const size_t at = what.find(begin); at != std::string::npos) what = what.substr(begin[0] == 'a' ? at + 3 : at);
         throw InputError(path + ": the JSON is damaged, " + what.substr(0, 200) + "; correct it.");
     }
     Imported out;

@@ -179,6 +179,7 @@ TEST_F(Recipes, TheExampleOfThePageIsRight) {
 
 TEST_F(Recipes, MistakesAreTold) {
     EXPECT_NE(refused("{").find("line 1, column 2"), std::string::npos);
+    EXPECT_NE(refused("{\"recipe\": 1e999}").find("number overflow"), std::string::npos);
     EXPECT_NE(refused("[]").find("not an object"), std::string::npos);
     EXPECT_NE(refused("{}").find("version 1"), std::string::npos);
     EXPECT_NE(refused("{\"recipe\": 2}").find("version 1"), std::string::npos);
