@@ -59,6 +59,16 @@ bool matches(std::string_view pattern, std::string_view text) {
     return p == pattern.size();
 }
 
+uint64_t bytes_of(const Scene& scene) {
+    uint64_t bytes = 0;
+    for (const Texture& texture : scene.textures) bytes += texture.rgba.size();
+    for (const Mesh& mesh : scene.meshes)
+        for (const Primitive& p : mesh.primitives)
+            bytes += sizeof(glm::vec3) * (p.positions.size() + p.normals.size()) + sizeof(glm::vec2) * (p.texcoords.size() + p.texcoords1.size()) +
+                     sizeof(glm::vec4) * (p.colors.size() + p.tangents.size()) + sizeof(uint32_t) * p.indices.size();
+    return bytes;
+}
+
 bool any_matches(const std::vector<std::string>& patterns, const std::string& text) {
     return std::ranges::any_of(patterns, [&](const std::string& pattern) { return matches(pattern, text); });
 }
@@ -83,8 +93,8 @@ std::optional<glm::mat4> looking(const dvec3& eye, const dvec3& target) {
 
 class Recipe {
 public:
-    Recipe(const std::string& path, const json& document)
-        : path_(path), root_(document, path, {"recipe", "background", "materials", "parts", "room", "boxes", "panels", "lights", "cameras"}) {
+    Recipe(const std::string& path, const json& document, uint64_t most_bytes)
+        : path_(path), left_(most_bytes), root_(document, path, {"recipe", "background", "materials", "parts", "room", "boxes", "panels", "lights", "cameras"}) {
         std::error_code error;
         const auto parent = std::filesystem::path(path).parent_path();
         folder_ = std::filesystem::canonical(parent.empty() ? "." : parent, error);
@@ -229,6 +239,9 @@ private:
         } catch (const InputError& e) {
             throw InputError(item.place() + ": " + e.what());
         }
+        const uint64_t bytes = bytes_of(part);
+        if (bytes > left_) item.fail("the parts up to it take too much memory", "give fewer, coarser ones, or one with many places");
+        left_ -= bytes;
         for (const std::string& warning : part.warnings) scene_.warnings.push_back(name + ": " + warning);
         if (!item.flag("lights", false)) part.lights.clear();
         if (!item.flag("cameras", false)) part.cameras.clear();
@@ -448,6 +461,7 @@ private:
     }
 
     const std::string path_;
+    uint64_t left_;                            // bytes that parts may still take
     const Item root_;
     std::filesystem::path folder_;
     Scene scene_;
@@ -461,7 +475,7 @@ private:
 
 }  // namespace
 
-Imported import_recipe(const std::string& path, const ImportOptions&) {
+Scene read_recipe(const std::string& path, uint64_t most) {
     constexpr uint64_t most_bytes = 16 << 20;
     const Bytes bytes = read_file(path, most_bytes);
     json document;
@@ -473,8 +487,12 @@ Imported import_recipe(const std::string& path, const ImportOptions&) {
             if (const size_t at = what.find(begin); at != std::string::npos) what = what.substr(begin[0] == 'a' ? at + 3 : at);
         throw InputError(path + ": the JSON is damaged, " + what.substr(0, 200) + "; correct it.");
     }
+    return Recipe(path, document, most).make();
+}
+
+Imported import_recipe(const std::string& path, const ImportOptions&) {
     Imported out;
-    out.scene = Recipe(path, document).make();
+    out.scene = read_recipe(path);
     out.crease = 0;
     return out;
 }

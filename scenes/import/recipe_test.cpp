@@ -166,6 +166,18 @@ TEST_F(Recipes, ABuiltInIsAPartToo) {
     EXPECT_EQ(make(R"("parts": [{"file": "builtin:cornell", "cameras": true, "at": [1, 0, 0]}])").cameras.size(), 1u);
 }
 
+// The same scene of some kilobytes twice: a recipe of a few lines must not take all the memory there is.
+TEST_F(Recipes, PartsAreBounded) {
+    const std::string path = put("r.json", R"({"recipe": 1, "parts": [{"file": "builtin:cornell?cells=1"}, {"name": "again", "file": "builtin:cornell?cells=1"}]})");
+    EXPECT_EQ(importing::read_recipe(path).meshes.size() % 2, 0u);
+    try {
+        importing::read_recipe(path, 10 << 10);
+        ADD_FAILURE() << "accepted";
+    } catch (const InputError& e) {
+        EXPECT_NE(std::string(e.what()).find("parts[1] \"again\": the parts up to it take too much memory"), std::string::npos) << e.what();
+    }
+}
+
 TEST_F(Recipes, TheExampleOfThePageIsRight) {
     for (const char* name : {"table.obj", "teapot.obj", "cup.obj"}) put(name, "v 0 0 0\nv 1 0 0\nv 0 1 1\nf 1 2 3\n");
     std::ifstream page(MYRIAD_RECIPES);
