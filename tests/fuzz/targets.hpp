@@ -21,7 +21,7 @@ void ibsp(const uint8_t* data, size_t size);     // a map of Quake III; what `my
 void embree(const uint8_t* data, size_t size);   // XML, and after the first zero byte the numbers, gzipped or not
 void assimp(const uint8_t* data, size_t size);   // the first byte says which ending the file has
 void ply(const uint8_t* data, size_t size);
-void texture(const uint8_t* data, size_t size);  // TGA, BMP, GIF, PSD and PNM, as textures of imported scenes come
+void texture(const uint8_t* data, size_t size);  // TGA, BMP, GIF and PSD, as textures of imported scenes come
 void recipe(const uint8_t* data, size_t size);   // beside a few parts that it may name
 
 struct Target {
