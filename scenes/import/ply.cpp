@@ -257,7 +257,7 @@ private:
 
     uint64_t length(const Property& p) {
         const double count = values_.next(*p.count);
-        if (!(count >= 0) || count != std::floor(count)) file_.fail("a list has " + std::to_string(count) + " entries");
+        if (!(count >= 0 && count < double(none)) || count != std::floor(count)) file_.fail("a list has " + std::to_string(count) + " entries");
         values_.expect(uint64_t(count), size_of(p.type), "corners of a face");
         return uint64_t(count);
     }
