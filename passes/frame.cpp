@@ -46,16 +46,20 @@ auto Frame::step(const char* name, Make make) {
 }
 
 Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles, const FrameSettings& settings)
-    : Frame(device, scene, triangles, {world_triangles(triangles), settings.cache}, settings) {}
+    : Frame(device, scene, triangles, geometry_data(scene, triangles), settings) {}
 
-Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles, compute::Derived derived,
+Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles, const GeometryData& data,
              const FrameSettings& settings)
-    : device_(device), settings_(settings), recorder_(device),
-      geometry_(step("uploading triangles", [&] { return Geometry(device, scene, triangles); })),
-      lights_(step("listing lights", [&] { return LightTable(device, scene, triangles); })),
-      bvh_(step("building the ray tree", [&] { return derived.bvh(device); })), gbuffer_(device, settings.width, settings.height, bvh_.constants()),
-      compose_(device, settings.width, settings.height),
+    : Frame(device, scene, triangles, data, {data.world, settings.cache}, settings) {}
+
+Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles, const GeometryData& data,
+             compute::Derived derived, const FrameSettings& settings)
+    : device_(device), settings_(settings), recorder_(device), geometry_(step("uploading triangles", [&] { return Geometry(device, triangles, data); })),
+      lights_(step("listing lights", [&] { return LightTable(device, scene, triangles, data); })),
+      bvh_(step("building the ray tree", [&] { return derived.bvh(device, compute::BvhQuality::quick, geometry_.opacity()); })),
+      gbuffer_(device, settings.width, settings.height, bvh_.constants()), compose_(device, settings.width, settings.height),
       exhausted_(device, "frame", "exhausted walks", 1), host_words_(device, "frame", "frame words", 5, engine::Location::host) {
+    background_ = scene.background;
     const compute::WorldTriangles& world = derived.world();
     const glm::vec3 far = glm::max(glm::abs(triangles.lo), glm::abs(triangles.hi));
     reach_ = std::max({far.x, far.y, far.z});
@@ -75,7 +79,7 @@ Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::T
     step("finding where light goes", [&] { vpl_->prepare(recorder_, geometry_, bvh_, lights_, settings.bounces, settings.seed); });
     if (!tree_) return;
     auto scope = recorder_.scope("refit");
-    tree_->refit(recorder_, geometry_.positions(), geometry_.triangles(), geometry_.instances());
+    tree_->refit(recorder_, geometry_.positions(), geometry_.triangles(), geometry_.instances(), geometry_.opacity());
 }
 
 void Frame::make_indirect(compute::Derived& derived) {
@@ -100,7 +104,7 @@ void Frame::render(const scenes::Camera& camera) {
     const float pixel_angle = 2 * std::tan(camera.yfov / 2) / float(settings_.height);
     {
         auto scope = recorder_.scope("gbuffer");
-        gbuffer_.record(recorder_, geometry_, bvh_, camera);
+        gbuffer_.record(recorder_, geometry_, bvh_, camera, background_);
     }
     if (direct_) {
         auto scope = recorder_.scope("direct");

@@ -88,7 +88,9 @@ public:
     const std::vector<BuildStep>& build_steps() const { return build_steps_; }
 
 private:
-    Frame(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles, compute::Derived derived,
+    Frame(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles, const GeometryData& data,
+          const FrameSettings& settings);
+    Frame(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles, const GeometryData& data, compute::Derived derived,
           const FrameSettings& settings);
     void make_indirect(compute::Derived& derived);
     template <class Make>
@@ -104,6 +106,7 @@ private:
     Geometry geometry_;
     LightTable lights_;
     compute::Bvh bvh_;
+    vec3 background_{0};
     float reach_ = 0, vpl_bound_ = 0;
     uint32_t block_ = 1;
     // Passes that the scene or the settings do not need do not exist.

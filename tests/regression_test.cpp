@@ -10,6 +10,7 @@
 
 #include "engine/testing.hpp"
 #include "passes/frame.hpp"
+#include "tests/materials_scene.hpp"
 #include "tools/exr.hpp"
 #include "tools/metrics.hpp"
 #include "tools/output_file.hpp"
@@ -125,8 +126,8 @@ void write_court(const Path& path) {
 
 class Regression : public engine::DeviceTest {
 protected:
-    Image render(const std::string& source, Visibility visibility) {
-        scenes::Scene scene = scenes::load(source);
+    Image render(const std::string& source, Visibility visibility) { return render(scenes::load(source), visibility); }
+    Image render(scenes::Scene scene, Visibility visibility) {
         const scenes::Triangles triangles = scenes::flatten(scene);
         EXPECT_TRUE(scene.warnings.empty()) << scene.warnings[0];
         passes::FrameSettings s;
@@ -138,13 +139,14 @@ protected:
         passes::Frame frame(device, scene, triangles, s);
         frame.render(scenes::pick_camera(scene, triangles, ""));
         Image image = tools::read_image(device, frame, {});
-        image.metadata = {{"scene", std::filesystem::path(source).filename()}, {"device", device.info().name},
+        image.metadata = {{"scene", std::filesystem::path(scene.name).filename()}, {"device", device.info().name},
                           {"driver", device.info().driver + " " + device.info().driver_version}};
         return image;
     }
 
-    void check(const std::string& name, const std::string& source, Visibility visibility) {
-        const Image image = render(source, visibility);
+    void check(const std::string& name, const std::string& source, Visibility visibility) { check(name, scenes::load(source), visibility); }
+    void check(const std::string& name, const scenes::Scene& scene, Visibility visibility) {
+        const Image image = render(scene, visibility);
         const Path golden = Path(MYRIAD_GOLDENS) / (name + ".exr");
         if (const char* bless = std::getenv("MYRIAD_BLESS"); bless && bless == std::string("1")) {
             const std::string was = std::filesystem::exists(golden) ? std::to_string(tools::measure(tools::read_exr(golden), image, 0).rel_mse) : "there was none";
@@ -167,6 +169,17 @@ TEST_F(Regression, gltf_manylods) {
     const TempFolder folder;
     write_court(folder / "court.glb");
     check("court_manylods", folder / "court.glb", Visibility::manylods);
+}
+
+TEST_F(Regression, materials_manylods) { check("materials_manylods", MaterialsScene::make(), Visibility::manylods); }
+TEST_F(Regression, materials_rays) { check("materials_rays", MaterialsScene::make(), Visibility::rays); }
+
+// With cut-outs and panes, maps are as near to rays as elsewhere.
+TEST_F(Regression, maps_know_the_holes) {
+    const scenes::Scene scene = MaterialsScene::make();
+    const double error = tools::measure(render(scene, Visibility::rays), render(scene, Visibility::manylods), 0).rel_mse;
+    std::printf("maps against rays: relMSE %.3g\n", error);
+    EXPECT_LT(error, 1e-3);
 }
 
 // ---- The judge itself ----

@@ -12,6 +12,16 @@ namespace myriad::compute {
 
 using engine::compute_kernels;
 
+namespace {
+
+engine::Constants leaf_constants(const WorldTriangles& world) {
+    engine::Constants constants = world.constants();
+    constants[2] = world.opacity.blends();
+    return constants;
+}
+
+}  // namespace
+
 std::vector<BshLevel> bsh_levels(uint leaves) {
     std::vector<BshLevel> levels{{leaves, 0}};
     do {
@@ -42,8 +52,8 @@ BshLeaves bsh_leaves(const WorldTriangles& world, uint32_t log2_samples, uint32_
 }
 
 Bsh::Bsh(engine::Device& device, const WorldTriangles& world, std::span<const SurfaceSample> leaves, double area, float radius)
-    : leaves_(device, compute_kernels, "bsh/leaves", world.constants()), inner_(device, compute_kernels, "bsh/inner"),
-      shared_(world.shared()) {
+    : leaves_(device, compute_kernels, "bsh/leaves", leaf_constants(world)), inner_(device, compute_kernels, "bsh/inner"),
+      shared_(world.shared()), blends_(world.opacity.blends()) {
     if (leaves.empty()) return;
     assert(std::has_single_bit(leaves.size()) && leaves.size() <= uint64_t(1) << 28 && "slots are 32-bit");
     depth_ = uint(std::countr_zero(leaves.size()));
@@ -61,8 +71,8 @@ Bsh::Bsh(engine::Device& device, const WorldTriangles& world, std::span<const Su
 }
 
 void Bsh::refit(engine::Recorder& recorder, const engine::Array<vec3>& positions, const engine::Array<uvec4>& triangles,
-                const engine::Array<Instance>* instances) {
-    assert(!shared_ || instances);
+                const engine::Array<Instance>* instances, const OpacityReader& opacity) {
+    assert((!shared_ || instances) && (!blends_ || opacity));
     for (size_t i = 0; i < levels_.size(); ++i) {
         const BshLevel& level = levels_[i];
         recorder.dispatch(i == 0 ? leaves_ : inner_,
@@ -76,6 +86,7 @@ void Bsh::refit(engine::Recorder& recorder, const engine::Array<vec3>& positions
                                        .triangles = recorder.read(triangles),
                                        .positions = recorder.read(positions),
                                        .instances = shared_ ? recorder.read(*instances) : Instances{},
+                                       .opacity = blends_ && i == 0 ? opacity(recorder) : OpacityRef{},
                                        .leaf_radius = sample_radius_,
                                        .leaf_share = sample_share(),
                                        .nodes = level.nodes,

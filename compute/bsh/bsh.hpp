@@ -38,9 +38,9 @@ public:
         : Bsh(device, world, bsh_leaves(world, log2_samples, seed)) {}
 
     // Computes all bounds for these positions: a dispatch a level, nothing read back. Triangles and instances are those sampled;
-    // `instances` may be null where triangles are not shared.
+    // `instances` may be null where triangles are not shared, `opacity` where nothing blends.
     void refit(engine::Recorder& recorder, const engine::Array<vec3>& positions, const engine::Array<uvec4>& triangles,
-               const engine::Array<Instance>* instances = nullptr);
+               const engine::Array<Instance>* instances = nullptr, const OpacityReader& opacity = {});
 
     // For a kernel that walks the tree.
     BshRef read(engine::Recorder& recorder) const;
@@ -65,7 +65,7 @@ public:
 private:
     engine::Program leaves_, inner_;
     uint depth_ = 0;
-    bool shared_;
+    bool shared_, blends_;
     std::vector<BshLevel> levels_;
     float sample_radius_ = 0;
     double area_ = 0;

@@ -16,13 +16,13 @@ void write_block(uint block, BshSpheres spheres, BshCones cones, BshBoxes boxes)
         push.spheres.at[slot + i] = i < count ? code : uvec2(0u, bsh_absent << 16);
         if (i >= count) push.cones.at[slot + i] = bsh_cone_all;
         spheres.at[i] = bsh_decode(frame, code);
-        push.boxes.at[slot + i] = i < count ? bsh_encode_box(spheres.at[i], boxes.at[i]) : uvec2(0u);
+        push.boxes.at[slot + i] = i < count ? bsh_encode_box(spheres.at[i], boxes.at[i], boxes.missing[i]) : uvec2(0u);
     }
     if (push.first_owner == 0u) return;
     const Sphere owner = bsh_merge(spheres);
     push.merged.at[slot >> 3] = vec4(owner.center, owner.radius);
     push.cones.at[push.first_owner + block] = bsh_cone_merge(cones);
     const BshBox box = bsh_merge_boxes(boxes);
-    push.merged_boxes.at[2u * (slot >> 3)] = vec4(box.low, 0.0f);
+    push.merged_boxes.at[2u * (slot >> 3)] = vec4(box.low, float(bsh_merge_missing(boxes)));
     push.merged_boxes.at[2u * (slot >> 3) + 1u] = vec4(box.high, 0.0f);
 }

@@ -7,6 +7,7 @@
 
 #include "compute/bsh/bsh_io.h"
 #include "compute/instances/instances.h"
+#include "compute/opacity/opacity_io.h"
 
 MYRIAD_BEGIN
 MYRIAD_ARRAY(BshPositions, vec3, 4)
@@ -19,7 +20,10 @@ const uint bsh_merge_moves = 8u;
 
 struct BshSpheres { Sphere at[8]; };
 struct BshCones { uint at[8]; };
-struct BshBoxes { BshBox at[8]; };  // in world space
+struct BshBoxes {
+    BshBox at[8];     // in world space
+    uint missing[8];  // of each, as bsh_missing
+};
 
 // "bsh/leaves" and "bsh/inner": one invocation a block of the level whose nodes are slots [first_slot, first_slot + nodes).
 struct BshLevelPush {
@@ -33,6 +37,7 @@ struct BshLevelPush {
     Uint4s triangles;
     BshPositions positions;
     Instances instances;       // where triangles are shared
+    OpacityRef opacity;        // where some blend
     float leaf_radius;         // of the sphere around a sample
     float leaf_share;          // area of the surface over the number of samples
     uint nodes, first_slot;
@@ -134,12 +139,12 @@ MYRIAD_FN BshBox bsh_patch_box(vec3 p, vec3 a, vec3 b, vec3 c, uint cone, float 
 MYRIAD_FN uint bsh_box_code(float v, float radius, float round_up) {
     return radius > 0.0f ? uint(clamp(floor((v / radius + 1.0f) * 511.0f + round_up), 0.0f, 1023.0f)) : 511u;
 }
-MYRIAD_FN uvec2 bsh_encode_box(Sphere s, BshBox box) {
+MYRIAD_FN uvec2 bsh_encode_box(Sphere s, BshBox box, uint missing) {
     const vec3 low = box.low - s.center;
     const vec3 high = box.high - s.center;
     const float up = 0.99999f;
-    return uvec2(bsh_box_code(low.x, s.radius, 0.0f) | (bsh_box_code(low.y, s.radius, 0.0f) << 10) | (bsh_box_code(low.z, s.radius, 0.0f) << 20),
-                 bsh_box_code(high.x, s.radius, up) | (bsh_box_code(high.y, s.radius, up) << 10) | (bsh_box_code(high.z, s.radius, up) << 20));
+    return uvec2(bsh_box_code(low.x, s.radius, 0.0f) | (bsh_box_code(low.y, s.radius, 0.0f) << 10) | (bsh_box_code(low.z, s.radius, 0.0f) << 20) | (missing << 30),
+                 bsh_box_code(high.x, s.radius, up) | (bsh_box_code(high.y, s.radius, up) << 10) | (bsh_box_code(high.z, s.radius, up) << 20) | ((missing >> 2) << 30));
 }
 MYRIAD_FN BshBox bsh_merge_boxes(BshBoxes children) {
     BshBox box = children.at[0];
@@ -152,6 +157,12 @@ MYRIAD_FN BshBox bsh_merge_boxes(BshBoxes children) {
 
 // The position of a sample.
 MYRIAD_FN vec3 bsh_position(vec3 a, vec3 b, vec3 c, float u, float v) { return (1.0f - u - v) * a + u * b + v * c; }
+
+MYRIAD_FN uint bsh_merge_missing(BshBoxes children) {
+    uint least = children.missing[0];
+    for (uint i = 1u; i < 8u; ++i) least = min(least, children.missing[i]);
+    return least;
+}
 
 // ---- Cones of lines ----
 

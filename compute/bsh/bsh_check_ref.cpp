@@ -60,7 +60,9 @@ struct Walk {
     bool leaf(uint slot) {
         if (!contains(tree.sphere(slot), {input.position(slot), input.leaf_radius}))
             return fail(slot, "the leaf's sphere does not contain its disc");
-        const glm::uvec4 t = input.triangles[input.samples[slot].triangle];
+        const SurfaceSample& s = input.samples[slot];
+        if (bsh_missing(tree.boxes[slot]) != input.opacity.missing({s.triangle}, s.u, s.v)) return fail(slot, "is not as whole as the surface");
+        const glm::uvec4 t = input.triangles[s.triangle];
         const RealVec a(input.positions[t.x]), b(input.positions[t.y]), c(input.positions[t.z]);
         const RealVec normal = glm::cross(b - a, c - a);
         const Real length = length_of(normal);
@@ -99,15 +101,17 @@ struct Walk {
         if (bsh_is_leaf(slot, tree.leaves)) return leaf(slot);
         const uint block = bsh_block_of(slot, tree.leaves, tree.blocks);
         if (block >= tree.blocks) return fail(slot, "owns a block outside the tree");
-        uint children = 0;
+        uint children = 0, missing = opacity_nothing;
         for (uint child = 8 * block; child < 8 * block + 8; ++child) {
             if (bsh_is_absent(tree.spheres[child])) continue;
             ++children;
+            missing = std::min(missing, bsh_missing(tree.boxes[child]));
             if (!node(child)) return false;
             if (!contains(sphere, tree.sphere(child))) return fail(child, "the parent's sphere does not contain the child's");
             if (!contains(lines(tree.cones[slot]), lines(tree.cones[child])))
                 return fail(child, "the parent's cone does not contain the child's");
         }
+        if (missing != bsh_missing(tree.boxes[slot])) return fail(slot, "is not as whole as the most whole child");
         if (children != 8 && slot != tree.root()) return fail(slot, "has fewer than eight children");
         return children > 0 || fail(slot, "has no children");
     }

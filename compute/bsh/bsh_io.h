@@ -66,14 +66,17 @@ MYRIAD_FN vec3 bsh_cone_axis(uint cone) {
 // What a node's surface fills of its sphere: the box around its samples' patches, 10 bits a side in units of the radius,
 // rounded outward, relative to the decoded centre. Spheres decide what is drawn; boxes say how far it reaches, because a
 // sphere around a square patch of wall sticks out over its neighbours, and eight levels of that darken every map.
+// The two bits that each word has left say how much is missing of the surface (opacity_missing): 0 for all but blended ones,
+// which a view's map shows or not (opacity_in_view). A node is as whole as the most whole node below it.
 struct BshBox {
     vec3 low, high;
 };
+MYRIAD_FN uint bsh_missing(uvec2 code) { return (code.x >> 30) | ((code.y >> 30) << 2); }
 MYRIAD_FN BshBox bsh_decode_box(uvec2 code, float radius) {
     const float step = radius / 511.0f;
     BshBox box;
-    box.low = vec3(float(code.x & 1023u), float((code.x >> 10) & 1023u), float(code.x >> 20)) * step - radius;
-    box.high = vec3(float(code.y & 1023u), float((code.y >> 10) & 1023u), float(code.y >> 20)) * step - radius;
+    box.low = vec3(float(code.x & 1023u), float((code.x >> 10) & 1023u), float((code.x >> 20) & 1023u)) * step - radius;
+    box.high = vec3(float(code.y & 1023u), float((code.y >> 10) & 1023u), float((code.y >> 20) & 1023u)) * step - radius;
     return box;
 }
 // Cosine and sine of the half-angle.

@@ -27,16 +27,20 @@ BshArrays bsh_ref(const BshInput& input) {
 
     std::vector<Sphere> nodes(tree.leaves);  // of the level, before they are encoded
     std::vector<BshBox> reaches(tree.leaves);
+    std::vector<uint> missing(tree.leaves);
     for (uint leaf = 0; leaf < tree.leaves; ++leaf) {
         const glm::uvec4 t = input.triangles[input.samples[leaf].triangle];
         nodes[leaf] = {input.position(leaf), input.leaf_radius};
         tree.cones[leaf] = bsh_cone_of(input.positions[t.y] - input.positions[t.x], input.positions[t.z] - input.positions[t.x]);
         reaches[leaf] = bsh_patch_box(nodes[leaf].center, input.positions[t.x], input.positions[t.y], input.positions[t.z], tree.cones[leaf],
                                       input.leaf_radius, input.leaf_share);
+        const SurfaceSample& s = input.samples[leaf];
+        missing[leaf] = input.opacity.missing({s.triangle}, s.u, s.v);
     }
     for (const BshLevel& level : levels) {
         std::vector<Sphere> owners;
         std::vector<BshBox> owner_reaches;
+        std::vector<uint> owner_missing;
         for (uint block = 0; block < level.blocks(); ++block) {
             const uint slot = level.first_slot + 8 * block;
             BshSpheres spheres;
@@ -47,6 +51,7 @@ BshArrays bsh_ref(const BshInput& input) {
                 spheres.at[i] = nodes[node];
                 cones.at[i] = tree.cones[level.first_slot + node];
                 boxes.at[i] = reaches[node];
+                boxes.missing[i] = missing[node];
             }
             tree.frames[slot / 8] = bsh_frame(spheres);
             for (uint i = 0; i < 8; ++i) {
@@ -54,16 +59,18 @@ BshArrays bsh_ref(const BshInput& input) {
                 spheres.at[i] = bsh_decode(tree.frames[slot / 8], code);
                 const bool present = 8 * block + i < level.nodes;
                 tree.spheres[slot + i] = present ? code : uvec2(0, bsh_absent << 16);
-                tree.boxes[slot + i] = present ? bsh_encode_box(spheres.at[i], boxes.at[i]) : uvec2(0);
+                tree.boxes[slot + i] = present ? bsh_encode_box(spheres.at[i], boxes.at[i], boxes.missing[i]) : uvec2(0);
                 if (!present) tree.cones[slot + i] = bsh_cone_all;
             }
             if (slot == tree.root()) break;
             owners.push_back(bsh_merge(spheres));
             owner_reaches.push_back(bsh_merge_boxes(boxes));
+            owner_missing.push_back(bsh_merge_missing(boxes));
             tree.cones[level.first_slot + 8 * level.blocks() + block] = bsh_cone_merge(cones);
         }
         nodes = std::move(owners);
         reaches = std::move(owner_reaches);
+        missing = std::move(owner_missing);
     }
     return tree;
 }

@@ -27,6 +27,7 @@ struct BshInput {
     std::span<const glm::vec3> positions;
     std::span<const glm::uvec4> triangles;
     float leaf_radius, leaf_share;
+    Opacity opacity = {};                    // of the triangles
 
     vec3 position(uint leaf) const;
 };

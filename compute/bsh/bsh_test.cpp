@@ -4,6 +4,7 @@
 
 #include "compute/bsh/bsh_order.hpp"
 #include "compute/bsh/bsh_ref.hpp"
+#include "compute/opacity/opacity_testing.hpp"
 #include "compute/surface_sampling/surface_sampling.hpp"
 #include "engine/testing.hpp"
 
@@ -100,6 +101,7 @@ protected:
         EXPECT_TRUE(same(twin.frames, tree.frames));
         EXPECT_TRUE(same(twin.spheres, tree.spheres));
         EXPECT_TRUE(same(twin.cones, tree.cones));
+        for (size_t i = 0; i < tree.boxes.size(); ++i) ASSERT_EQ(bsh_missing(twin.boxes[i]), bsh_missing(tree.boxes[i])) << i;
     }
 };
 
@@ -115,6 +117,30 @@ TEST_F(BshTest, device_equals_twin_and_both_are_valid) {
             expect_equal(twin, built.tree);
             if (HasFailure()) return;
         }
+}
+
+// Cut-outs are whole where samples stand; blended surfaces are not, and nodes are as whole as the most whole child.
+TEST_F(BshTest, keeps_what_is_missing_of_blended_surfaces) {
+    const OpacityScene scene = OpacityScene::soup(200, 0.3f, random);
+    const DeviceOpacity opacity(device, scene);
+    Bsh bsh(device, scene.world(), 11, 1);
+    const auto positions = on_device(scene.positions);
+    const auto triangles = on_device(scene.triangles);
+    engine::Recorder recorder(device);
+    bsh.refit(recorder, positions, triangles, nullptr, opacity.reader());
+    recorder.submit_and_wait();
+    const auto samples = engine::download(device, bsh.samples());
+    BshArrays tree = bsh_download(device, bsh);
+    const BshInput input{samples, scene.positions, scene.triangles, bsh.sample_radius(), bsh.sample_share(), scene.opacity()};
+    EXPECT_EQ(bsh_check(tree, input), "");
+    expect_equal(bsh_ref(input), tree);
+    std::array<uint, 16> count{};
+    for (uint leaf = 0; leaf < tree.leaves; ++leaf) ++count[bsh_missing(tree.boxes[leaf])];
+    EXPECT_EQ(count[opacity_nothing], 0u);
+    EXPECT_GT(count[0], 500u);
+    EXPECT_GT(std::count_if(count.begin() + 1, count.end(), [](uint n) { return n > 0; }), 8);
+    tree.boxes[tree.leaves + 3].y ^= 1u << 30;
+    EXPECT_NE(bsh_check(tree, input), "");
 }
 
 TEST_F(BshTest, follows_deformation) {

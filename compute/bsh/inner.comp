@@ -15,7 +15,9 @@ void main() {
         spheres.at[i].center = vec3(s);
         spheres.at[i].radius = s.w;
         cones.at[i] = push.cones.at[push.first_slot + node];
-        boxes.at[i].low = vec3(push.merged_boxes.at[2u * (push.first_child_block + node)]);
+        const vec4 low = push.merged_boxes.at[2u * (push.first_child_block + node)];
+        boxes.at[i].low = vec3(low);
+        boxes.missing[i] = uint(low.w);
         boxes.at[i].high = vec3(push.merged_boxes.at[2u * (push.first_child_block + node) + 1u]);
     }
     write_block(block, spheres, cones, boxes);

@@ -3,6 +3,9 @@
 // The lowest level: leaves are discs around samples, bounded by spheres and by their triangles' normals.
 #include "compute/bsh/bsh_block.glsl"
 #include "compute/instances/instances.glsl"
+#include "compute/opacity/opacity.glsl"
+
+layout(constant_id = 2) const bool blends = false;  // some surface does
 
 Corners corners_of(uint triangle) {
     uint stored = triangle;
@@ -34,6 +37,7 @@ void main() {
         cones.at[i] = bsh_cone_of(b - a, c - a);
         push.cones.at[leaf] = cones.at[i];
         boxes.at[i] = bsh_patch_box(spheres.at[i].center, a, b, c, cones.at[i], push.leaf_radius, push.leaf_share);
+        boxes.missing[i] = blends ? opacity_missing_at(push.opacity, s.triangle, s.u, s.v) : 0u;
     }
     write_block(block, spheres, cones, boxes);
 }

@@ -25,7 +25,7 @@ uint64_t builder_version() {
 }
 
 struct BvhScalars {
-    uint32_t depth, dropped;
+    uint32_t depth, dropped, asks;
 };
 struct LeavesScalars {
     double area;
@@ -42,6 +42,7 @@ std::optional<BvhParts> bvh_parts(const engine::CacheEntry& entry) {
     parts.instances = entry.array<Instance>(2);
     parts.depth = entry.array<BvhScalars>(3)[0].depth;
     parts.dropped = entry.array<BvhScalars>(3)[0].dropped;
+    parts.asks = entry.array<BvhScalars>(3)[0].asks != 0;
     if (parts.nodes.empty()) return std::nullopt;
     return parts;
 }
@@ -52,8 +53,9 @@ Derived::Derived(WorldTriangles world, engine::Cache* cache)
     : world_(std::move(world)), cache_(engine::program_id().empty() ? nullptr : cache) {
     if (!cache_) return;
     const uint64_t version = builder_version();
-    const engine::Bytes parts[] = {engine::program_id(), bytes(version), bytes(world_.positions), bytes(world_.triangles),
-                                   bytes(world_.instances)};
+    const auto opacity = world_.opacity.content();
+    const engine::Bytes parts[] = {engine::program_id(), bytes(version), bytes(world_.positions), bytes(world_.triangles), bytes(world_.instances),
+                                   opacity[0], opacity[1], opacity[2], opacity[3], opacity[4]};
     content_ = engine::digest(parts);
 }
 
@@ -63,16 +65,16 @@ std::string Derived::name(const char* kind, std::initializer_list<uint64_t> numb
     return std::string(kind) + "-" + engine::hex(engine::digest(parts));
 }
 
-Bvh Derived::bvh(engine::Device& device, BvhQuality quality) {
-    if (!cache_) return {device, world_, quality};
+Bvh Derived::bvh(engine::Device& device, BvhQuality quality, OpacityReader opacity) {
+    if (!cache_) return {device, world_, quality, std::move(opacity)};
     const std::string entry_name = name("rays", {uint64_t(quality)});
     if (const auto entry = cache_->find(entry_name))
-        if (const auto parts = bvh_parts(*entry)) return {device, world_, *parts};
+        if (const auto parts = bvh_parts(*entry)) return {device, world_, *parts, std::move(opacity)};
     const BvhData data = build_bvh(world_, quality);
-    const BvhScalars scalars{data.depth, data.dropped};
+    const BvhScalars scalars{data.depth, data.dropped, data.asks};
     const engine::Bytes parts[] = {bytes(data.nodes), bytes(data.triangles), bytes(data.instances), bytes(scalars)};
     cache_->store(entry_name, parts);
-    return {device, world_, data};
+    return {device, world_, data, std::move(opacity)};
 }
 
 Bsh Derived::bsh(engine::Device& device, uint32_t log2_samples, uint32_t seed) {

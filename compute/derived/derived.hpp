@@ -15,7 +15,8 @@ public:
 
     const WorldTriangles& world() const { return world_; }
 
-    Bvh bvh(engine::Device& device, BvhQuality quality = BvhQuality::quick);
+    // `opacity`: as Bvh takes it.
+    Bvh bvh(engine::Device& device, BvhQuality quality = BvhQuality::quick, OpacityReader opacity = {});
     Bsh bsh(engine::Device& device, uint32_t log2_samples, uint32_t seed);
 
 private:

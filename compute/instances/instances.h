@@ -38,6 +38,9 @@ MYRIAD_FN vec3 instance_normal(Instance i, vec3 n) {
     return (i.flags & instance_mirrored) != 0u ? -m : m;
 }
 
+// Whether a triangle's last two corners change places between what is stored and the world.
+MYRIAD_FN bool instance_swaps(Instance i) { return (i.flags & (instance_in_world | instance_mirrored)) == instance_mirrored; }
+
 struct Corners {
     vec3 p0, p1, p2;
 };

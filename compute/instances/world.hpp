@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compute/instances/instances.h"
+#include "compute/opacity/opacity.hpp"
 #include "engine/program.hpp"
 
 namespace myriad::compute {
@@ -15,6 +16,7 @@ struct WorldTriangles {
     std::span<const glm::vec3> positions;
     std::span<const glm::uvec4> triangles;  // as stored: three indices into positions, and a fourth word that is the caller's
     std::vector<Instance> instances = {};   // by ids, without gaps; empty: a triangle's id is its index
+    Opacity opacity = {};                   // of triangles as stored
 
     bool shared() const { return !instances.empty(); }
     uint32_t count() const { return shared() ? instances.back().first_id + instances.back().count : uint32_t(triangles.size()); }
@@ -32,6 +34,16 @@ struct WorldTriangles {
         if (!shared()) return stored(id);
         const Instance& i = instance(id);
         return instance_corners(i, stored(i.first_triangle + (id - i.first_id)));
+    }
+    // Whether there is a surface at a point, and how much of one: see Opacity.
+    bool is_there(uint32_t id, float u, float v, uint dice = opacity_alone) const {
+        return opacity.everywhere() || opacity.is_there(place(id), id, u, v, dice);
+    }
+    float mean_opacity(uint32_t id, float u, float v) const { return opacity.everywhere() ? 1 : opacity.mean(place(id), u, v); }
+    OpacityPlace place(uint32_t id) const {
+        if (!shared()) return {id, false};
+        const Instance& i = instance(id);
+        return {i.first_triangle + (id - i.first_id), instance_swaps(i)};
     }
     // visit(id, index as stored, corners) for the triangles [begin, end), in the order of ids.
     template <class Visit>

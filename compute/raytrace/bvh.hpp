@@ -1,7 +1,6 @@
 // A tree of boxes over a scene's triangles, on the device, for trace.glsl; see README.md.
 #pragma once
 
-#include <span>
 
 #include "compute/raytrace/bvh_build.hpp"
 #include "engine/recorder.hpp"
@@ -10,10 +9,11 @@ namespace myriad::compute {
 
 class Bvh {
 public:
+    // `opacity`: of the same triangles as world.opacity, needed where some ask; what it refers to must outlive the tree.
     // Throws OutOfMemory.
-    Bvh(engine::Device& device, const WorldTriangles& world, const BvhParts& tree);
-    Bvh(engine::Device& device, const WorldTriangles& world, BvhQuality quality = BvhQuality::quick)
-        : Bvh(device, world, build_bvh(world, quality)) {}
+    Bvh(engine::Device& device, const WorldTriangles& world, const BvhParts& tree, OpacityReader opacity = {});
+    Bvh(engine::Device& device, const WorldTriangles& world, BvhQuality quality = BvhQuality::quick, OpacityReader opacity = {})
+        : Bvh(device, world, build_bvh(world, quality), std::move(opacity)) {}
 
     // What kernels that include trace.glsl are specialised by, beside their own: programs are made for a tree.
     engine::Constants constants(engine::Constants own = {}) const;
@@ -23,7 +23,8 @@ public:
 
     uint64_t nodes() const { return nodes_.count(); }
     uint64_t triangles() const { return triangle_count_; }  // in the leaves
-    uint64_t dropped() const { return dropped_; }           // zero area, not finite, or a copy of another
+    uint64_t dropped() const { return dropped_; }           // zero area, not finite, nowhere, or a copy of another
+    bool asks() const { return bool(opacity_); }            // some triangles are there in part
     uint64_t bytes() const { return nodes_.bytes() + triangles_.bytes() + instances_.bytes(); }
     uint depth() const { return depth_; }
 
@@ -31,6 +32,7 @@ private:
     engine::Array<BvhNode> nodes_;
     engine::Array<BvhTriangle> triangles_;
     engine::Array<Instance> instances_;
+    OpacityReader opacity_;  // if any triangle asks
     uint64_t triangle_count_ = 0, dropped_ = 0;
     bool shared_ = false;
     uint depth_ = 0, loop_budget_ = 0;

@@ -104,8 +104,10 @@ void append_hittable(const WorldTriangles& world, uint first, uint count, uint f
         for (size_t i = begin; i < end; ++i) {
             const auto [p0, p1, p2] = world.stored(first + uint(i));
             const glm::dvec3 area = cross(glm::dvec3(p1) - glm::dvec3(p0), glm::dvec3(p2) - glm::dvec3(p0));
-            keep[i] = finite(p0) && finite(p1) && finite(p2) && (shared ? p0 != p1 && p1 != p2 && p2 != p0 : area != glm::dvec3(0));
-            kept[before + i] = {p0, p1, p2, first_id + uint(i)};
+            const Opacity::Kind kind = world.opacity.kind(first + uint(i));
+            keep[i] = kind != Opacity::Kind::nowhere && finite(p0) && finite(p1) && finite(p2) &&
+                      (shared ? p0 != p1 && p1 != p2 && p2 != p0 : area != glm::dvec3(0));
+            kept[before + i] = {p0, p1, p2, (first_id + uint(i)) | (kind == Opacity::Kind::asks ? bvh_asks : 0)};
         }
     }, threads);
     for (size_t i = 0; i < count; ++i)
@@ -126,8 +128,8 @@ uint32_t hash(const Key& key) {
     return uint32_t(h * 0xd6e8feb86659fd93u >> 32);
 }
 
-// Copies of a triangle can only tie with it; a heap of them in one place would be a tree that prunes nothing. The first stays.
-// Copies have one hash, so only what shares a hash is compared.
+// Copies of a triangle that is everywhere can only tie with it; a heap of them in one place would be a tree that prunes nothing.
+// The first such stays, and what asks before it. Copies have one hash, so only what shares a hash is compared.
 void drop_copies(std::vector<BvhTriangle>& kept, uint32_t threads) {
     std::vector<uint64_t> hashed(kept.size());
     engine::parallel_pieces(hashed.size(), grain, [&](size_t begin, size_t end) {
@@ -142,7 +144,12 @@ void drop_copies(std::vector<BvhTriangle>& kept, uint32_t threads) {
         alike.clear();
         for (size_t i = run; i < next; ++i) alike.emplace_back(key(kept[uint(hashed[i])]), uint(hashed[i]));
         std::sort(alike.begin(), alike.end());
-        for (size_t i = 1; i < alike.size(); ++i) copy[alike[i].second] = alike[i].first == alike[i - 1].first;
+        bool everywhere = false;  // one of those before
+        for (size_t i = 0; i < alike.size(); ++i) {
+            if (i > 0 && alike[i].first != alike[i - 1].first) everywhere = false;
+            copy[alike[i].second] = everywhere;
+            everywhere = everywhere || (kept[alike[i].second].id & bvh_asks) == 0;
+        }
     }
     size_t n = 0;
     for (size_t i = 0; i < kept.size(); ++i)
@@ -372,15 +379,7 @@ BvhData build_levels(const WorldTriangles& world, BvhQuality quality, uint32_t t
     return out;
 }
 
-}  // namespace
-
-BvhBox bvh_box(const BvhTriangle& t) {
-    const vec3 lo = min(t.p0, min(t.p1, t.p2)), hi = max(t.p0, max(t.p1, t.p2)), pad = padding(t);
-    return {lo - pad, hi + pad};
-}
-
-BvhData build_bvh(const WorldTriangles& world, BvhQuality quality, uint32_t threads) {
-    if (world.shared()) return build_levels(world, quality, threads);
+BvhData build_tree(const WorldTriangles& world, BvhQuality quality, uint32_t threads) {
     BvhData out;
     std::vector<BvhTriangle> triangles;
     append_hittable(world, 0, world.count(), 0, false, threads, triangles);
@@ -389,6 +388,20 @@ BvhData build_bvh(const WorldTriangles& world, BvhQuality quality, uint32_t thre
     out.nodes.push_back({});
     out.triangles.reserve(triangles.size());
     out.depth = append_tree(triangles, 0, quality, bvh_max_depth, threads, out);
+    return out;
+}
+
+}  // namespace
+
+BvhBox bvh_box(const BvhTriangle& t) {
+    const vec3 lo = min(t.p0, min(t.p1, t.p2)), hi = max(t.p0, max(t.p1, t.p2)), pad = padding(t);
+    return {lo - pad, hi + pad};
+}
+
+BvhData build_bvh(const WorldTriangles& world, BvhQuality quality, uint32_t threads) {
+    assert(world.count() <= bvh_asks);
+    BvhData out = world.shared() ? build_levels(world, quality, threads) : build_tree(world, quality, threads);
+    out.asks = std::any_of(out.triangles.begin(), out.triangles.end(), [](const BvhTriangle& t) { return (t.id & bvh_asks) != 0; });
     return out;
 }
 

@@ -20,7 +20,8 @@ struct BvhData {
     std::vector<BvhTriangle> triangles;   // in the order of leaves; spatial splits repeat some
     std::vector<Instance> instances;      // that nodes refer to: those that share, and one for all that is stored in world space
     uint depth = 0;                       // levels of nodes on the longest way down, at most bvh_max_depth; with instances bvh_max_stack
-    uint dropped = 0;                     // stored triangles that no ray can hit: zero area, not finite, or a copy of an earlier one
+    uint dropped = 0;                     // stored triangles that no ray can hit: zero area, not finite, nowhere, or a copy of an earlier one
+    bool asks = false;                    // some triangle does (bvh_asks)
 };
 
 // The same wherever it lies.
@@ -29,12 +30,13 @@ struct BvhParts {
     std::span<const BvhTriangle> triangles;
     std::span<const Instance> instances;
     uint depth = 0, dropped = 0;
+    bool asks = false;
     BvhParts() = default;
     BvhParts(const BvhData& data)
-        : nodes(data.nodes), triangles(data.triangles), instances(data.instances), depth(data.depth), dropped(data.dropped) {}
+        : nodes(data.nodes), triangles(data.triangles), instances(data.instances), depth(data.depth), dropped(data.dropped), asks(data.asks) {}
 };
 
-// The same input gives the same bytes, whatever the number of threads (0: all there are).
+// The same input gives the same bytes, whatever the number of threads (0: all there are). Fewer than 2^31 triangles.
 BvhData build_bvh(const WorldTriangles& world, BvhQuality quality = BvhQuality::quick, uint32_t threads = 0);
 
 // The bounds that a triangle is boxed by; see bvh_build.cpp for what they are enlarged by.

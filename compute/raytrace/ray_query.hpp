@@ -9,8 +9,8 @@ class RayQuery {
 public:
     RayQuery(engine::Device& device, const Bvh& bvh);
 
-    // For this tree only, since kernels are specialised by it. `hits` and `occluded` hold an element a ray. `status[0]`, which the caller has cleared, becomes 1 when a ray met the
-    // device's loop limit; its result is then void.
+    // For this tree only, since kernels are specialised by it. `hits` and `occluded` hold an element a ray. `status[0]`, which the
+    // caller has cleared, becomes 1 when a ray met the device's loop limit; its result is then void.
     void closest(engine::Recorder& recorder, const Bvh& bvh, const engine::Array<Ray>& rays, const engine::Array<RayHitRecord>& hits,
                  const engine::Array<uint>& status);
     void occluded(engine::Recorder& recorder, const Bvh& bvh, const engine::Array<Ray>& rays, const engine::Array<uint>& occluded,

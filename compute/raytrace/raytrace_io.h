@@ -2,7 +2,7 @@
 #ifndef MYRIAD_COMPUTE_RAYTRACE_IO_H
 #define MYRIAD_COMPUTE_RAYTRACE_IO_H
 
-#include "compute/instances/instances.h"
+#include "compute/opacity/opacity_io.h"
 
 MYRIAD_BEGIN
 const uint bvh_width = 8u;
@@ -48,8 +48,13 @@ MYRIAD_FN vec3 instance_pad(vec3 axis_x, vec3 axis_y, vec3 axis_z, vec3 from, ve
 // Positions gathered so that a test reads 9 words in a row; the tenth is read for the hit that is kept.
 struct BvhTriangle {
     vec3 p0, p1, p2;
-    uint id;              // in the world; of a shared mesh: counted from its first
+    uint id;              // in the world; of a shared mesh: counted from its first. And bvh_asks
 };
+// The triangle is there in part: a hit counts only where opacity_is_there says so.
+const uint bvh_asks = 0x80000000u;
+// The specialisation constant of kernels that trace: whether any triangle asks. The variant without pays nothing for it.
+const uint trace_asks_constant = 16u;
+
 MYRIAD_ARRAY(BvhNodes, BvhNode, 8)
 MYRIAD_ARRAY(BvhTriangles, BvhTriangle, 4)
 
@@ -58,6 +63,7 @@ struct BvhRef {
     BvhNodes nodes;
     BvhTriangles triangles;
     Instances instances;  // the tree's own; first_id is what to add to the ids of its triangles
+    OpacityRef opacity;   // if any triangle asks
     uint loop_budget;     // see trace_exhausted in trace.glsl
     uint padding;         // C++ would add it anyway
 };
@@ -112,7 +118,7 @@ struct RayQueryPush {
 MYRIAD_END
 
 #ifdef __cplusplus
-static_assert(sizeof(myriad::BvhNode) == 88 && sizeof(myriad::BvhTriangle) == 40 && sizeof(myriad::BvhRef) == 32);
+static_assert(sizeof(myriad::BvhNode) == 88 && sizeof(myriad::BvhTriangle) == 40 && sizeof(myriad::BvhRef) == 40);
 static_assert(sizeof(myriad::Ray) == 32 && sizeof(myriad::RayHitRecord) == 20);
 #endif
 

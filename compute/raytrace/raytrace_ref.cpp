@@ -7,20 +7,24 @@
 
 namespace myriad::compute {
 
-RayHitRecord closest_ref(std::span<const BvhTriangle> triangles, const Ray& r) {
+RayHitRecord closest_ref(std::span<const BvhTriangle> triangles, const Ray& r, const WorldTriangles& world) {
     const TraceRay ray = trace_ray(r.origin, r.direction, r.t_min, r.t_max);
     RayHitRecord best{.t = r.t_max, .triangle = ~0u, .u = 0, .v = 0, .front = 0};
     for (const BvhTriangle& triangle : triangles) {
         float t = 0;
         vec3 weights{0};
         if (!triangle_hit(ray, triangle.p0, triangle.p1, triangle.p2, t, weights)) continue;
-        if (t < best.t || (t == best.t && best.triangle != ~0u && triangle.id < best.triangle))
-            best = {t, triangle.id, weights.x, weights.y, weights.z > 0 ? 1u : 0u};
+        const uint id = triangle.id & ~bvh_asks;
+        if (!world.is_there(id, weights.x, weights.y)) continue;
+        if (t < best.t || (t == best.t && best.triangle != ~0u && id < best.triangle))
+            best = {t, id, weights.x, weights.y, weights.z > 0 ? 1u : 0u};
     }
     return best;
 }
 
-bool occluded_ref(std::span<const BvhTriangle> triangles, const Ray& ray) { return closest_ref(triangles, ray).triangle != ~0u; }
+bool occluded_ref(std::span<const BvhTriangle> triangles, const Ray& ray, const WorldTriangles& world) {
+    return closest_ref(triangles, ray, world).triangle != ~0u;
+}
 
 ExactHit closest_exact(std::span<const glm::vec3> positions, std::span<const glm::uvec4> triangles, const Ray& ray) {
     using glm::dvec3;

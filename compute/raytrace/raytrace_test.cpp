@@ -3,6 +3,7 @@
 #include <embree3/rtcore.h>
 
 #include "compute/kernels.hpp"
+#include "compute/opacity/opacity_testing.hpp"
 #include "compute/raytrace/ray_query.hpp"
 #include "compute/raytrace/raytrace_ref.hpp"
 #include "engine/testing.hpp"
@@ -98,13 +99,18 @@ protected:
 
     // Device against the float twin, to the bit, closest and occluded.
     void agree(engine::Device& on, const Mesh& m, const std::vector<Ray>& rays, BvhQuality quality = BvhQuality::quick) {
-        const BvhData all = build_bvh(m.world());
-        const Bvh bvh(on, m.world(), quality);
+        agree(on, m.world(), m.world(), rays, quality);
+    }
+    // `written_out`: the same scene without instances.
+    void agree(engine::Device& on, const WorldTriangles& world, const WorldTriangles& written_out, const std::vector<Ray>& rays, BvhQuality quality,
+               const OpacityReader& opacity = {}) {
+        const BvhData all = build_bvh(written_out);
+        const Bvh bvh(on, world, quality, opacity);
         const auto hits = closest(on, bvh, rays);
         const auto blocked = occluded(on, bvh, rays);
         uint wrong = 0;
         for (size_t i = 0; i < rays.size(); ++i) {
-            const RayHitRecord expected = closest_ref(all.triangles, rays[i]);
+            const RayHitRecord expected = closest_ref(all.triangles, rays[i], written_out);
             if (std::memcmp(&expected, &hits[i], sizeof expected) == 0 && blocked[i] == uint(expected.triangle != ~0u)) continue;
             if (++wrong == 1)
                 ADD_FAILURE() << "ray " << i << " of " << rays.size() << ": expected triangle " << expected.triangle << " at " << expected.t << " ("
@@ -361,6 +367,77 @@ TEST_F(RaytraceTest, rays_leave_their_own_surface) {
             }
             EXPECT_EQ(blocked, 0u) << "scale " << scale << ", place " << place;
         }
+}
+
+// Cut-outs and blended surfaces of all kinds, to the bit: wraps, both sets, transforms, vertex colours; shared and not.
+TEST_F(RaytraceTest, rays_pass_where_a_triangle_is_not) {
+    setenv("MYRIAD_PLAIN_GROUPS", "1", 1);
+    engine::Device plain({.select = "", .validation = true, .memory_limit = 0});
+    unsetenv("MYRIAD_PLAIN_GROUPS");
+    for (engine::Device* on : {&device, &plain})
+        for (float size : {0.05f, 0.5f, 2.0f}) {
+            OpacityScene scene = OpacityScene::soup(1500, size, random);
+            const auto rays = random_rays(3001);
+            const DeviceOpacity opacity(*on, scene);
+            for (auto quality : {BvhQuality::quick, BvhQuality::best}) agree(*on, scene.world(), scene.world(), rays, quality, opacity.reader());
+            // The scene has holes that rays pass, and not all of them.
+            const auto triangles = build_bvh(WorldTriangles{scene.positions, scene.triangles}).triangles;
+            uint solid = 0, holed = 0;
+            for (const Ray& ray : rays) solid += occluded_ref(triangles, ray), holed += occluded_ref(triangles, ray, scene.world());
+            EXPECT_LT(holed, solid) << size;
+            EXPECT_GT(holed, solid / 3) << size;
+
+            scene.share(random);
+            const OpacityScene written_out = scene.written_out();
+            const DeviceOpacity shared(*on, scene);
+            agree(*on, scene.world(), written_out.world(), rays, BvhQuality::quick, shared.reader());
+        }
+    EXPECT_EQ(plain.validation_messages(), 0u);
+}
+
+TEST_F(RaytraceTest, a_cut_out_by_hand) {
+    OpacityScene scene;
+    scene.texels = {0x00ffffff, 0xffffffff};  // the left half is not there
+    scene.square(0, scene.material({{0, 2, 1, wrap_clamp | wrap_clamp << 2, {1, 0}, {0, 1}, {0, 0}}, 1, 0.5f}));
+    scene.square(-1, scene.material(Opacity::opaque()));
+    scene.square(-2, scene.material({.alpha = 0.25f, .cutoff = 0.5f}));  // nowhere
+    const DeviceOpacity opacity(device, scene);
+    const Bvh bvh(device, scene.world(), BvhQuality::quick, opacity.reader());
+    EXPECT_TRUE(bvh.asks());
+    EXPECT_EQ(bvh.triangles(), 4u);
+    EXPECT_EQ(bvh.dropped(), 2u);
+    const auto hits = closest(device, bvh, {{{0.25f, 0.5f, 1}, 0, {0, 0, -1}, 9}, {{-0.25f, 0.5f, 1}, 0, {0, 0, -1}, 9}, {{-0.25f, 0.5f, -3}, 0, {0, 0, 1}, 9},
+                                            {{-0.25f, 0.5f, -0.5f}, 0, {0, 0, 1}, 9}});
+    EXPECT_EQ(hits[0].t, 1);
+    EXPECT_EQ(hits[1].t, 2);
+    EXPECT_EQ(hits[2].t, 2);
+    EXPECT_EQ(hits[3].triangle, ~0u);
+    EXPECT_LT(hits[0].triangle, 2u);
+}
+
+// A copy counts where what it copies is not: two sides of a leaf, say, that are textured in different ways.
+TEST_F(RaytraceTest, copies_of_cut_outs_are_kept) {
+    OpacityScene scene;
+    scene.texels = {0x00ffffff, 0xffffffff};
+    const TextureRef left{0, 2, 1, wrap_clamp | wrap_clamp << 2, {-1, 0}, {0, 1}, {1, 0}}, right{0, 2, 1, wrap_clamp | wrap_clamp << 2, {1, 0}, {0, 1}, {0, 0}};
+    scene.square(0, scene.material({left, 1, 0.5f}));
+    scene.square(0, scene.material({right, 1, 0.5f}));
+    scene.square(0, scene.material(Opacity::opaque()));
+    scene.square(0, scene.material({right, 1, 0.5f}));  // behind what is everywhere: never hit
+    const DeviceOpacity opacity(device, scene);
+    const Bvh bvh(device, scene.world(), BvhQuality::quick, opacity.reader());
+    EXPECT_EQ(bvh.triangles(), 6u);
+    const auto hits = closest(device, bvh, {{{-0.5f, 0, 1}, 0, {0, 0, -1}, 9}, {{0.5f, 0, 1}, 0, {0, 0, -1}, 9}});
+    EXPECT_EQ(hits[0].triangle / 2, 0u);
+    EXPECT_EQ(hits[1].triangle / 2, 1u);
+}
+
+TEST_F(RaytraceTest, opaque_scenes_ask_nothing) {
+    OpacityScene scene = OpacityScene::soup(50, 1, random);
+    for (OpacityMaterial& m : scene.materials) m = Opacity::opaque();
+    const Bvh bvh(device, scene.world());
+    EXPECT_FALSE(bvh.asks());
+    EXPECT_EQ(bvh.constants({{2, 1}}), (engine::Constants{{2, 1}, {trace_asks_constant, 0}, {instanced_constant, 0}}));
 }
 
 TEST_F(RaytraceTest, running_out_of_the_loop_budget_is_reported) {

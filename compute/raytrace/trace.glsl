@@ -3,6 +3,8 @@
 //     RayHit trace_closest(BvhRef bvh, vec3 origin, vec3 direction, float t_min, float t_max)
 //     bool trace_occluded(BvhRef bvh, vec3 origin, vec3 direction, float t_min, float t_max)
 //
+// A triangle is hit where it is (compute/opacity): rays pass the holes of cut-outs.
+//
 // Hits lie in the open interval, 0 <= t_min; t counts in lengths of `direction`, which need not be unit. Start rays at
 // ray_origin() (raytrace_io.h). The results depend on the scene and the ray alone, not on the tree or on other rays:
 // of two triangles at the same t, the one of lower index is hit.
@@ -21,6 +23,9 @@
 #include "compute/raytrace/raytrace_io.h"
 #include "compute/raytrace/intersect.h"
 #include "compute/instances/instances.glsl"
+#include "compute/opacity/opacity.glsl"
+
+layout(constant_id = trace_asks_constant) const bool trace_asks = false;
 
 const uint no_triangle = 0xffffffffu;
 
@@ -36,6 +41,9 @@ struct RayHit {
 // host makes an error of it or splits the work.
 bool trace_exhausted = false;
 uint trace_steps = 0u;
+
+// Which dice this invocation's rays throw at blended surfaces (opacity_io.h).
+uint trace_dice = opacity_alone;
 
 bool trace_step(BvhRef bvh) {
     if (++trace_steps > bvh.loop_budget) trace_exhausted = true;
@@ -83,7 +91,20 @@ void trace_leave(inout TraceSpace space, TraceRay ray) {
     space.floor_ = 0u;
 }
 
-uint trace_id(BvhRef bvh, uint slot, uint first_id) { return instanced ? first_id + bvh.triangles.at[slot].id : bvh.triangles.at[slot].id; }
+uint trace_id(BvhRef bvh, uint slot, uint first_id) {
+    const uint id = trace_asks ? bvh.triangles.at[slot].id & ~bvh_asks : bvh.triangles.at[slot].id;
+    return instanced ? first_id + id : id;
+}
+
+// Whether the triangle is where it was hit, if it asks.
+bool trace_counts(BvhRef bvh, TraceSpace space, uint slot, vec3 weights) {
+    const uint word = bvh.triangles.at[slot].id;
+    if ((word & bvh_asks) == 0u) return true;
+    const uint own = word & ~bvh_asks;
+    if (!instanced || (space.instance.flags & instance_in_world) != 0u) return opacity_is_there(bvh.opacity, own, weights.x, weights.y, trace_dice);
+    const OpacityPlace at = OpacityPlace(space.instance.first_triangle + own, instance_swaps(space.instance));
+    return opacity_is_there(bvh.opacity, at, space.instance.first_id + own, weights.x, weights.y, trace_dice);
+}
 
 // In `any` mode a ray that has met something gets t_max = -1, so that nothing else meets it.
 void trace_triangle(BvhRef bvh, inout TraceState state, TraceSpace space, uint slot, Corners corners, const bool any) {
@@ -96,6 +117,7 @@ void trace_triangle(BvhRef bvh, inout TraceState state, TraceSpace space, uint s
     if (!any && t == state.ray.t_max && state.slot != no_triangle)
         closer = trace_id(bvh, slot, space.instance.first_id) < trace_id(bvh, state.slot, state.first_id);
     if (!closer) return;
+    if (trace_asks && !trace_counts(bvh, space, slot, weights)) return;
     state.slot = slot;
     if (instanced) state.first_id = space.instance.first_id;
     state.ray.t_max = any ? -1.0 : t;

@@ -65,8 +65,13 @@ struct Piece {
     // Sample i of the low-discrepancy sequence of Basu and Owen (2015): van der Corput's in base 4, with the four
     // similar triangles of a subdivision for digits.
     dvec2 point(uint64_t i) const {
+        const auto [a, b, c] = part(i, (int(std::bit_width(i)) + 1) / 2);
+        return (a + b + c) / 3.0;  // further digits are zeros: the middle's middle is the middle
+    }
+    // The triangle that its first `levels` digits lead to.
+    std::array<dvec2, 3> part(uint64_t i, int levels) const {
         dvec2 a = in.uv, b = apex.uv, c = out.uv;
-        for (; i > 0; i >>= 2) {
+        for (; levels > 0; --levels, i >>= 2) {
             const dvec2 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
             switch (i & 3) {
                 case 0: a = bc, b = ca, c = ab; break;
@@ -75,7 +80,7 @@ struct Piece {
                 case 3: a = ca, b = bc; break;
             }
         }
-        return (a + b + c) / 3.0;  // further digits are zeros: the middle's middle is the middle
+        return {a, b, c};
     }
 };
 
@@ -129,6 +134,8 @@ struct Share {
     uint32_t triangle;
     uint32_t path;      // which halves it is, from the highest bit on, after a leading 1
 
+    bool asks = false;  // whether it is there, point by point
+
     Piece piece(const WorldTriangles& world) const {
         Piece piece = whole(world.corners(triangle));
         for (int bit = int(std::bit_width(path)) - 2; bit >= 0; --bit) piece = piece.halves()[path >> bit & 1];
@@ -145,26 +152,82 @@ void cut(const Piece& piece, Share share, double sample_area, std::vector<Share>
         return;
     }
     const auto halves = piece.halves();
-    for (uint32_t i = 0; i < 2; ++i) cut(halves[i], {0, 0.5 * share.area, share.triangle, 2 * share.path + i}, sample_area, shares, centers);
+    for (uint32_t i = 0; i < 2; ++i) cut(halves[i], {0, 0.5 * share.area, share.triangle, 2 * share.path + i, share.asks}, sample_area, shares, centers);
 }
+
+// ---- Triangles that are there in part (compute/opacity) ----
+
+// Points of a part: for how much of it is there, and for its samples. They take the sequence's triangles in turn, at a level of some
+// four a sample that would be due if it were whole, and are anywhere in each: the sequence's own points, at halves and quarters, fall on
+// the grid of textures, and are the same for all leaves of a tree.
+class Candidates {
+public:
+    // `sample_area`: of a sample if everything were whole.
+    Candidates(const WorldTriangles& world, const Share& share, double sample_area, uint32_t seed)
+        : world_(world), place_(world.place(share.triangle)), piece_(share.piece(world).with_longest_first()), triangle_(share.triangle),
+          seed_(seed + 7919 * share.path) {
+        const double due = piece_.area() / sample_area;
+        while (levels_ < 8 && questions() < 4 * due) ++levels_;
+    }
+
+    double part_there() const {
+        uint64_t kept = 0;
+        for (uint64_t i = 0; i < questions(); ++i) kept += is_kept(point(i));
+        return double(kept) / double(questions());
+    }
+
+    // The first ones that are there. It asks on, and comes to repeat itself only where there is very little.
+    void sample(uint64_t count, SurfaceSample* samples) const {
+        uint64_t found = 0;
+        for (uint64_t i = 0; i < 16 * (questions() + count) && found < count; ++i)
+            if (const dvec2 uv = point(i); is_kept(uv)) samples[found++] = {triangle_, float(uv.x), float(uv.y)};
+        assert(found > 0 && "a share of which nothing is there has no area");
+        for (uint64_t i = found; i < count; ++i) samples[i] = samples[i - found];
+    }
+
+private:
+    uint64_t questions() const { return uint64_t(1) << 2 * levels_; }
+    dvec2 point(uint64_t i) const {
+        const auto [a, b, c] = piece_.part(i, levels_);
+        const double r = std::sqrt(hashed(triangle_, seed_ + 2 * uint32_t(i))), s = hashed(triangle_, seed_ + 2 * uint32_t(i) + 1);
+        return (1 - r) * a + r * (1 - s) * b + r * s * c;
+    }
+    bool is_kept(const dvec2& uv) const { return world_.opacity.is_kept(place_, float(uv.x), float(uv.y)); }
+
+    const WorldTriangles& world_;
+    OpacityPlace place_;
+    Piece piece_;
+    uint32_t triangle_, seed_;
+    int levels_ = 2;  // of the sequence's subdivision: at least 16 questions, at most 65536
+};
 
 // What a piece of the triangles is cut into, in their order.
 struct Cuts {
     std::vector<Share> shares;
     std::vector<dvec3> centers;
     dvec3 low{HUGE_VAL}, high{-HUGE_VAL};  // of the centres
+
+    void keep_what_is_there(const WorldTriangles& world, double sample_area, uint32_t seed) {
+        size_t kept = 0;
+        for (size_t i = 0; i < shares.size(); ++i) {
+            if (shares[i].asks) shares[i].area *= Candidates(world, shares[i], sample_area, seed).part_there();
+            if (shares[i].area > 0) shares[kept] = shares[i], centers[kept++] = centers[i];
+        }
+        shares.resize(kept), centers.resize(kept);
+    }
 };
 
 // All shares of the surface along Hilbert's curve: systematic samples of small neighbours are then even, too. Where they tie
 // there, the triangle's number decides, and the path in it: there is one order.
-std::vector<Share> ordered_shares(const WorldTriangles& world, std::span<const double> areas, double sample_area, uint32_t threads) {
+std::vector<Share> ordered_shares(const WorldTriangles& world, std::span<const double> areas, double sample_area, uint32_t seed, uint32_t threads) {
     std::vector<Cuts> cuts((areas.size() + grain - 1) / grain);
     engine::parallel_pieces(areas.size(), grain, [&](size_t begin, size_t end) {
         Cuts& here = cuts[begin / grain];
         here.shares.reserve(end - begin), here.centers.reserve(end - begin);
-        world.for_each(uint32_t(begin), uint32_t(end), [&](uint32_t t, uint32_t, const Corners& corners) {
-            if (areas[t] > 0) cut(whole(corners), {0, areas[t], t, 1}, sample_area, here.shares, here.centers);
+        world.for_each(uint32_t(begin), uint32_t(end), [&](uint32_t t, uint32_t stored, const Corners& corners) {
+            if (areas[t] > 0) cut(whole(corners), {0, areas[t], t, 1, world.opacity.kind(stored) == Opacity::Kind::asks}, sample_area, here.shares, here.centers);
         });
+        if (!world.opacity.everywhere()) here.keep_what_is_there(world, sample_area, seed);
         for (const dvec3& c : here.centers) here.low = glm::min(here.low, c), here.high = glm::max(here.high, c);
     }, threads);
 
@@ -250,10 +313,18 @@ SurfaceSampling sample_surface(const WorldTriangles& world, uint32_t log2_count,
     const uint64_t n = uint64_t(1) << log2_count;
     std::vector<double> areas(world.count());
     engine::parallel_pieces(areas.size(), grain, [&](size_t begin, size_t end) {
-        world.for_each(uint32_t(begin), uint32_t(end), [&](uint32_t t, uint32_t, const Corners& corners) { areas[t] = finite_area(whole(corners)); });
+        world.for_each(uint32_t(begin), uint32_t(end), [&](uint32_t t, uint32_t stored, const Corners& corners) {
+            if (world.opacity.kind(stored) != Opacity::Kind::nowhere) areas[t] = finite_area(whole(corners));
+        });
     }, threads);
     for (const double area : areas) result.area += area;
-    if (!(result.area > 0)) {
+    const double whole_sample_area = result.area / double(n);  // if everything were whole
+    const std::vector<Share> shares = result.area > 0 ? ordered_shares(world, areas, whole_sample_area, seed, threads) : std::vector<Share>{};
+    if (std::any_of(shares.begin(), shares.end(), [](const Share& s) { return s.asks; })) {
+        result.area = 0;
+        for (const Share& share : shares) result.area += share.area;
+    }
+    if (shares.empty()) {
         result.samples = sample_vertices(world, n);
         return result;
     }
@@ -263,7 +334,6 @@ SurfaceSampling sample_surface(const WorldTriangles& world, uint32_t log2_count,
 
     // Systematic sampling: sample i is at (i + phase) / n of the cumulative area, so each share gets the floor or the
     // ceiling of what it is due. One sum in one order, whatever the threads; then each share is on its own.
-    const std::vector<Share> shares = ordered_shares(world, areas, sample_area, threads);
     const double phase = hashed(seed, 0);
     std::vector<uint32_t> first(shares.size() + 1);
     double sum = 0;
@@ -273,9 +343,13 @@ SurfaceSampling sample_surface(const WorldTriangles& world, uint32_t log2_count,
     }
     first.back() = uint32_t(n);
     engine::parallel_pieces(shares.size(), grain, [&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i)
-            if (const uint32_t count = first[i + 1] - first[i])
-                sample_share(world, shares[i], count, shares[i].area / sample_area, seed, &result.samples[first[i]]);
+        for (size_t i = begin; i < end; ++i) {
+            const Share& share = shares[i];
+            const uint32_t count = first[i + 1] - first[i];
+            SurfaceSample* samples = &result.samples[first[i]];
+            if (count > 0 && share.asks) Candidates(world, share, whole_sample_area, seed).sample(count, samples);
+            else if (count > 0) sample_share(world, share, count, share.area / sample_area, seed, samples);
+        }
     }, threads);
     return result;
 }

@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include "compute/opacity/opacity_testing.hpp"
+
 namespace myriad::compute {
 namespace {
 
@@ -160,6 +162,60 @@ TEST(SurfaceSamplingTest, any_scale) {
         for (vec3& p : mesh.positions) p *= float(scale);
         const SurfaceSampling sampling = mesh.sample(8);
         EXPECT_NEAR(sampling.radius / scale, surface_sample_cover * std::sqrt(100 / (256 * std::numbers::pi)), 1e-3) << scale;
+    }
+}
+
+// A chequered square, a whole one, one that is nowhere, and a tree of small cards.
+TEST(SurfaceSamplingTest, samples_stand_where_the_surface_is) {
+    std::mt19937 random(2);
+    OpacityScene s;
+    s.texels = {0xff000000, 0, 0, 0xff000000};
+    const TextureRef checks{0, 2, 2, 0, {8, 0}, {0, 8}, {0, 0}};
+    s.square(0, s.material({checks, 1, 0.5f}));
+    s.square(1, s.material(Opacity::opaque()));
+    s.square(2, s.material({.alpha = 0.2f, .cutoff = 0.5f}));
+    const TextureRef disc = s.texture(16, 16, random, wrap_clamp | wrap_clamp << 2, 0);
+    for (uint i = 0; i < 256; ++i)
+        if (const float x = float(i % 16) - 7.5f, y = float(i / 16) - 7.5f; x * x + y * y < 36) s.texels[disc.first + i] |= 0xff000000;
+    const uint leaf = s.material({disc, 1, 0.5f});
+    for (int i = 0; i < 4000; ++i) {  // 16 m^2 of cards
+        const vec3 at(0.1f * float(i % 60), 5 + 0.1f * float(i / 60), 0);
+        s.triangle({at, at + vec3(0.0632f, 0, 0), at + vec3(0.0632f, 0.0632f, 0)}, {{0, 1}, {1, 1}, {1, 0}}, leaf);
+        s.triangle({at, at + vec3(0.0632f, 0.0632f, 0), at + vec3(0, 0.0632f, 0)}, {{0, 1}, {1, 0}, {0, 0}}, leaf);
+    }
+    const double in_disc = std::numbers::pi * 36 / 256, expected = 2 + 4 + 16 * in_disc;
+    for (uint32_t d : {8u, 12u, 15u}) {
+        const SurfaceSampling sampling = sample_surface(s.world(), d, 1);
+        ASSERT_EQ(sampling.samples.size(), size_t(1) << d);
+        EXPECT_NEAR(sampling.area, expected, 0.03 * expected) << d;
+        EXPECT_NEAR(sampling.radius, surface_sample_cover * std::sqrt(sampling.area / std::ldexp(std::numbers::pi, int(d))), 1e-6);
+        std::array<double, 4> share{};
+        for (const SurfaceSample& sample : sampling.samples) {
+            ASSERT_TRUE(s.world().is_there(sample.triangle, sample.u, sample.v));
+            share[std::min(sample.triangle / 2, 3u)] += 1 / std::ldexp(1.0, int(d));
+        }
+        const double tolerance = 0.01 + 2 / std::ldexp(1.0, int(d));
+        EXPECT_NEAR(share[0], 2 / expected, tolerance) << d;
+        EXPECT_NEAR(share[1], 4 / expected, tolerance) << d;
+        EXPECT_EQ(share[2], 0) << d;
+        EXPECT_NEAR(share[3], 16 * in_disc / expected, tolerance) << d;
+    }
+    for (OpacityMaterial& m : s.materials) m = {.alpha = 0.1f, .cutoff = 0.5f};  // nothing is anywhere
+    EXPECT_EQ(sample_surface(s.world(), 5, 1).radius, 0);
+    EXPECT_EQ(sample_surface(s.world(), 5, 1).samples.size(), 32u);
+}
+
+TEST(SurfaceSamplingTest, what_is_everywhere_is_sampled_as_if_nobody_asked) {
+    std::mt19937 random(2);
+    OpacityScene s = OpacityScene::soup(300, 0.3f, random);
+    s.colors.clear();
+    const TextureRef full = s.texture(3, 3, random, 0, 255);
+    for (OpacityMaterial& m : s.materials) m = {full, 1, opacity_blended};
+    const SurfaceSampling asked = sample_surface(s.world(), 12, 1), plain = sample_surface({s.positions, s.triangles}, 12, 1);
+    EXPECT_EQ(asked.area, plain.area);
+    for (size_t i = 0; i < plain.samples.size(); ++i) {
+        ASSERT_EQ(asked.samples[i].triangle, plain.samples[i].triangle);
+        ASSERT_EQ(asked.samples[i].u, plain.samples[i].u);
     }
 }
 

@@ -23,6 +23,7 @@ IncidentRef incident_ref(const scenes::Light& light, const dvec3& p) {
 }
 
 std::vector<dvec3> direct_ref(const scenes::Scene& scene, const scenes::Triangles& triangles, const std::vector<PixelRef>& gbuffer) {
+    const ThereRef there = there_ref(scene, triangles);
     std::vector<dvec3> radiance;
     for (const PixelRef& pixel : gbuffer) {
         dvec3 sum(0);
@@ -32,7 +33,7 @@ std::vector<dvec3> direct_ref(const scenes::Scene& scene, const scenes::Triangle
             const IncidentRef incident = incident_ref(light, s.position);
             const double cosine = glm::dot(s.shading_normal, incident.to_light);
             if (cosine <= 0 || glm::dot(s.geometric_normal, incident.to_light) <= 0) continue;
-            if (closest_ref(triangles, s.position, incident.to_light, 1e-5, incident.distance)) continue;
+            if (closest_ref(triangles, s.position, incident.to_light, 1e-5, incident.distance, there)) continue;
             sum += s.albedo / std::numbers::pi * cosine * incident.irradiance;
         }
         radiance.push_back(sum);

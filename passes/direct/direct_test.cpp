@@ -20,8 +20,8 @@ protected:
     Result run(const TestScene& test, uint32_t width, uint32_t height, uint32_t lights_a_dispatch = 0) {
         const UploadedScene scene(device, test);
         EXPECT_EQ(DirectPass::needed(scene.lights), !test.scene.lights.empty());
-        GBufferPass gbuffer(device, width, height);
-        DirectPass direct(device, width, height, lights_a_dispatch);
+        GBufferPass gbuffer(device, width, height, scene.bvh.constants());
+        DirectPass direct(device, width, height, lights_a_dispatch, scene.bvh.constants());
         engine::Recorder recorder(device);
         gbuffer.record(recorder, scene.geometry, scene.bvh, test.scene.cameras[0]);
         direct.record(recorder, gbuffer.gbuffer(), scene.bvh, scene.lights);
@@ -97,6 +97,38 @@ TEST_F(DirectTest, an_occluder_casts_its_shadow) {
     }
     EXPECT_GT(lit, 100u);
     EXPECT_GT(dark, 100u);
+}
+
+TEST_F(DirectTest, light_falls_through_holes) {
+    using Alpha = scenes::Material::Alpha;
+    TestScene test;
+    for (const Alpha alpha : {Alpha::opaque, Alpha::mask, Alpha::mask}) test.textured(random).alpha = alpha;
+    test.soup(150, 4, random);
+    test.decorate(random);
+    test.light(Type::point, {3, 4, 6}, {0, 0, -1}, vec3(50));
+    test.light(Type::directional, vec3(0), {-1, -2, -3}, vec3(2));
+    test.look({0, 0, 10}, vec3(0), 1);
+    const auto got = run(test, 60, 48);
+    EXPECT_LE(differing(test, got, 60, 48), 60u * 48 / 50);
+    for (scenes::Material& m : test.scene.materials) m.alpha = Alpha::opaque;
+    EXPECT_GT(differing(test, got, 60, 48), 60u * 48 / 10);
+}
+
+// A pane of alpha 0.3 before the light dims it by 0.3, two of them by 0.51; nothing of it is where it is not.
+TEST_F(DirectTest, shadows_of_blended_surfaces_are_right_in_the_mean) {
+    for (const int panes : {1, 2}) {
+        TestScene test = floor(vec3(1));
+        scenes::Material& m = test.scene.materials[test.material(vec3(0.5f))];
+        m.alpha = scenes::Material::Alpha::blend, m.base_color.a = 0.3f;
+        for (int i = 0; i < panes; ++i) test.quad({-100, 20.0f + float(i), -100}, {0, 0, 200}, {200, 0, 0}, 1);
+        test.light(Type::directional, vec3(0), {0, -1, 0}, vec3(std::numbers::pi_v<float>));
+        double sum = 0;
+        for (const vec4& radiance : run(test, 200, 200).radiance) {
+            ASSERT_TRUE(radiance.x == 0 || std::abs(radiance.x - 1) < 1e-4);
+            sum += double(radiance.x);
+        }
+        EXPECT_NEAR(sum / 40000, std::pow(0.7, panes), 0.01);
+    }
 }
 
 TEST_F(DirectTest, equals_the_twin_on_random_scenes) {

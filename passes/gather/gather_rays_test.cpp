@@ -12,9 +12,11 @@ protected:
     static constexpr uint32_t width = 20, height = 14;
 
     // Receivers on a soup's triangles, VPLs in the air between them.
-    void make(size_t triangles) {
+    void make(size_t triangles, bool holed = false) {
         scene.material(vec3(1));
+        for (int i = 0; i < 3 && holed; ++i) scene.textured(random).alpha = scenes::Material::Alpha::mask;
         scene.soup(triangles, 2, random);
+        if (holed) scene.decorate(random);
         for (size_t i = 0; i < g.pixels(); ++i) {
             const uvec4& t = scene.triangles.triangles[random() % triangles];
             const float u = uniform(0.1f, 0.45f), v = uniform(0.1f, 0.45f);
@@ -26,15 +28,17 @@ protected:
     }
     std::vector<GatherRef> twin(const std::vector<Vpl>& vpls, uint block) const {
         return gather_ref(g, vpls, block, 2, [&](size_t pixel, size_t i) {
-            return ray_seen_ref(dvec3(ray_origin(g.position(pixel), g.geometric(pixel), reach)), dvec3(vpls[i].position), scene.triangles);
+            return ray_seen_ref(dvec3(ray_origin(g.position(pixel), g.geometric(pixel), reach)), dvec3(vpls[i].position), scene.triangles,
+                                there_ref(scene.scene, scene.triangles));
         });
     }
     std::vector<vec4> trace(const std::vector<Vpl>& vpls, uint block, uint32_t part) {
-        const compute::Bvh bvh(device, world_triangles(scene.triangles));
+        const UploadedScene uploaded(device, scene);
+        const compute::Bvh& bvh = uploaded.bvh;
         const GBuffer gbuffer = g.on(device);
         const auto on = on_device(vpls);
         const auto count = on_device(std::vector<uint>{uint(vpls.size())}), status = on_device(std::vector<uint>{0});
-        GatherPass gather(device, GatherVisibility::rays, width, height);
+        GatherPass gather(device, GatherVisibility::rays, width, height, bvh.constants());
         const GatherInputs in{gbuffer, on, count, block, 2};
         engine::Recorder recorder(device);
         gather.clear(recorder);
@@ -62,6 +66,19 @@ TEST_F(GatherRaysTest, equals_brute_force) {
     const auto free = gather_ref(g, vpls, 1, 2), hidden = twin(vpls, 1);
     for (size_t i = 0; i < free.size(); ++i) seen += hidden[i].irradiance.x, all += free[i].irradiance.x;
     EXPECT_TRUE(seen > 0.1 * all && seen < 0.9 * all) << seen / all;
+}
+
+TEST_F(GatherRaysTest, light_falls_through_holes) {
+    make(40, true);
+    const auto vpls = random_vpls(120);
+    const auto expected = twin(vpls, 2);
+    EXPECT_LT(doubt(expected), 0.02);
+    EXPECT_TRUE(near(expected, trace(vpls, 2, 1 << 20)));
+    double holed = 0, solid = 0;
+    for (const GatherRef& r : twin(vpls, 1)) holed += r.irradiance.x;
+    for (scenes::Material& m : scene.scene.materials) m.alpha = scenes::Material::Alpha::opaque;
+    for (const GatherRef& r : twin(vpls, 1)) solid += r.irradiance.x;
+    EXPECT_GT(holed, 1.05 * solid);
 }
 
 // More VPLs a set than one dispatch takes (64), so the pass splits by itself; and split by the caller.

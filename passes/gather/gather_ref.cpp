@@ -71,9 +71,10 @@ std::vector<uint> exact_map(const vec3& from, const scenes::Triangles& triangles
     return map;
 }
 
-Seen ray_seen_ref(const dvec3& from, const dvec3& to, const scenes::Triangles& triangles) {
+Seen ray_seen_ref(const dvec3& from, const dvec3& to, const scenes::Triangles& triangles, const ThereRef& there) {
     Seen seen = seen_whole;
-    for (const uvec4& t : triangles.triangles) {
+    for (uint32_t i = 0; i < triangles.triangles.size(); ++i) {
+        const uvec4& t = triangles.triangles[i];
         const dvec3 a = dvec3(triangles.positions[t.x]) - from, b = dvec3(triangles.positions[t.y]) - from, c = dvec3(triangles.positions[t.z]) - from;
         const dvec3 d = to - from, n = cross(b - a, c - a);
         // Weights from the volumes that the ray spans with the edges, and t from the triangle's plane.
@@ -81,6 +82,7 @@ Seen ray_seen_ref(const dvec3& from, const dvec3& to, const scenes::Triangles& t
         const double inside = std::min({wa / sum, wb / sum, wc / sum}), at = dot(a, n) / dot(d, n);
         // A ray leaves its own triangle from some 1e-6 of its length away (ray_origin), which is no doubt.
         const double margin = std::min(inside / 1e-4, std::min(at, 1 - at) / 5e-7);
+        if (margin > -1 && there && !there(i, std::max(wb / sum, 0.0), std::max(wc / sum, 0.0))) continue;
         if (margin > 1) return seen_not;
         if (margin > -1) seen = seen_unsure;
     }

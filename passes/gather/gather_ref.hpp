@@ -32,6 +32,6 @@ Seen map_seen_ref(const glm::dvec3& x, const glm::dvec3& n_g, const glm::dvec3& 
 std::vector<uint> exact_map(const vec3& from, const scenes::Triangles& triangles, uint size);
 
 // Whether nothing lies between the points, by every triangle. Unsure where an edge, or either end, is close.
-Seen ray_seen_ref(const glm::dvec3& from, const glm::dvec3& to, const scenes::Triangles& triangles);
+Seen ray_seen_ref(const glm::dvec3& from, const glm::dvec3& to, const scenes::Triangles& triangles, const ThereRef& there = {});
 
 }  // namespace myriad::passes

@@ -33,7 +33,8 @@ GBufferPass::GBufferPass(engine::Device& device, uint32_t width, uint32_t height
       gbuffer_(device, width, height), hits_(device, "images", "primary hits", gbuffer_.pixels()),
       exhausted_(device, "images", "primary hits exhausted", 1) {}
 
-void GBufferPass::record(engine::Recorder& recorder, const Geometry& geometry, const compute::Bvh& bvh, const scenes::Camera& camera) {
+void GBufferPass::record(engine::Recorder& recorder, const Geometry& geometry, const compute::Bvh& bvh, const scenes::Camera& camera,
+                         const vec3& background) {
     const CameraPush push = camera_push(camera, gbuffer_.width, gbuffer_.height);
     recorder.fill(exhausted_, 0);
     recorder.dispatch(trace_,
@@ -49,6 +50,7 @@ void GBufferPass::record(engine::Recorder& recorder, const Geometry& geometry, c
                                        .emitted = recorder.write(gbuffer_.emitted),
                                        .eye = push.position,
                                        .forward = push.forward,
+                                       .background = background,
                                        .count = uint(gbuffer_.pixels())},
                       gbuffer_.pixels());
 }

@@ -27,7 +27,9 @@ public:
     // `variant`: specialisation constants that the scene needs of kernels, the same in all passes (Frame).
     GBufferPass(engine::Device& device, uint32_t width, uint32_t height, const engine::Constants& variant = {});
 
-    void record(engine::Recorder& recorder, const Geometry& geometry, const compute::Bvh& bvh, const scenes::Camera& camera);
+    // `background`: radiance that pixels see where their rays leave the scene.
+    void record(engine::Recorder& recorder, const Geometry& geometry, const compute::Bvh& bvh, const scenes::Camera& camera,
+                const vec3& background = vec3(0));
 
     const GBuffer& gbuffer() const { return gbuffer_; }
     // [0] != 0: a ray's walk met the device's limit on loops (trace.glsl), and the result cannot be trusted.

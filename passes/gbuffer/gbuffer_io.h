@@ -47,9 +47,10 @@ struct GBufferShadePush {
     Float4s positions;
     Uint2s normals;
     Float4s albedo;
-    Float4s emitted;     // radiance that the surface itself sends to the camera
+    Float4s emitted;     // radiance that the surface itself sends to the camera, or what is behind everything
     vec3 eye;
     vec3 forward;
+    vec3 background;     // radiance
     uint count;
 };
 MYRIAD_END

@@ -16,9 +16,10 @@ std::vector<PixelRef> gbuffer_ref(const scenes::Scene& scene, const scenes::Tria
         for (uint32_t x = 0; x < width; ++x) {
             const double right = (2 * (x + 0.5) / width - 1) * tangent * width / height, up = (1 - 2 * (y + 0.5) / height) * tangent;
             const dvec3 direction = glm::normalize(dvec3(to_world * glm::dvec4(right, up, -1, 0)));
-            const HitRef hit = closest_ref(triangles, eye, direction, 0, 1e30);
-            if (!hit) continue;
+            const HitRef hit = closest_ref(triangles, eye, direction, 0, 1e30, there_ref(scene, triangles, opacity_pixel(x, y)));
             PixelRef& pixel = pixels[size_t(y) * width + x];
+            pixel.surface.emission = dvec3(scene.background);
+            if (!hit) continue;
             pixel.surface = face_towards_ref(surface_ref(scene, triangles, hit.triangle, hit.u, hit.v), direction);
             pixel.depth = hit.t * glm::dot(direction, -dvec3(to_world[2]));
         }

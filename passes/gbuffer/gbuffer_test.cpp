@@ -17,9 +17,9 @@ protected:
     };
     Pixels run(const TestScene& test, uint32_t width, uint32_t height) {
         const UploadedScene scene(device, test);
-        GBufferPass pass(device, width, height);
+        GBufferPass pass(device, width, height, scene.bvh.constants());
         engine::Recorder recorder(device);
-        pass.record(recorder, scene.geometry, scene.bvh, test.scene.cameras[0]);
+        pass.record(recorder, scene.geometry, scene.bvh, test.scene.cameras[0], test.scene.background);
         recorder.submit_and_wait();
         EXPECT_EQ(engine::download(device, pass.exhausted())[0], 0u);
         const GBuffer& g = pass.gbuffer();
@@ -42,7 +42,7 @@ protected:
                       far(e.surface.geometric_normal, dvec3(unpack_direction(got.normals[i].y)), 2e-4) ||
                       far(e.surface.albedo, dvec3(got.albedo[i]), 1e-4) || far(e.surface.emission, dvec3(got.emitted[i]), 1e-4);
             else
-                bad = bad || got.positions[i] != vec4(0) || got.normals[i] != uvec2(0) || got.albedo[i] != vec4(0) || got.emitted[i] != vec4(0);
+                bad = bad || got.positions[i] != vec4(0) || got.normals[i] != uvec2(0) || got.albedo[i] != vec4(0) || got.emitted[i] != vec4(test.scene.background, 0);
             wrong += bad;
         }
         return wrong;
@@ -73,6 +73,101 @@ TEST_F(GBufferTest, equals_the_twin_on_random_triangles) {
         const auto got = run(test, 67, 41);
         EXPECT_LE(differing(test, got, 67, 41, 2 * extent), 67u * 41 / 200);
     }
+}
+
+// Vertex colours, both sets of coordinates, transforms, bent normals with and without tangents, unlit surfaces, cut-outs and
+// blended ones, in front of a sky.
+TEST_F(GBufferTest, equals_the_twin_with_all_that_glTF_says_of_a_surface) {
+    using Alpha = scenes::Material::Alpha;
+    for (const bool decorated : {false, true}) {
+        TestScene test;
+        test.scene.background = {0.25f, 0.5f, 2};
+        for (const Alpha alpha : {Alpha::opaque, Alpha::mask, Alpha::blend}) {
+            test.textured(random).alpha = alpha;
+            test.textured(random, scenes::Texture::Wrap::mirror, scenes::Texture::Wrap::clamp).alpha = alpha;
+            scenes::Material& unlit = test.textured(random);
+            unlit.alpha = alpha, unlit.unlit = true;
+            scenes::Material& plain = test.scene.materials[test.material(vec3(0.5f))];
+            plain.alpha = alpha, plain.base_color.a = 0.6f;
+        }
+        test.soup(300, 3, random);
+        if (decorated) test.decorate(random);
+        test.look({0.1f, 0.2f, 8}, vec3(0), 1.1f);
+        const auto got = run(test, 67, 41);
+        EXPECT_LE(differing(test, got, 67, 41, 8), 67u * 41 / 100) << decorated;
+        // Each of these things is seen: without it the picture is another.
+        const auto changes = [&](const char* what, auto change) {
+            TestScene other = test;
+            for (scenes::Material& m : other.scene.materials) change(m);
+            change(other.triangles);
+            EXPECT_GT(differing(other, got, 67, 41, 8), 67u * 41 / 50) << what << decorated;
+        };
+        const auto material = [&](const char* what, auto change) {
+            changes(what, [&](auto& of) { if constexpr (std::is_same_v<std::decay_t<decltype(of)>, scenes::Material>) change(of); });
+        };
+        const auto vertices = [&](const char* what, auto change) {
+            changes(what, [&](auto& of) { if constexpr (std::is_same_v<std::decay_t<decltype(of)>, scenes::Triangles>) change(of); });
+        };
+        material("alpha", [](scenes::Material& m) { m.alpha = Alpha::opaque; });
+        material("cutoff", [](scenes::Material& m) { m.alpha_cutoff = 0.3f; });
+        material("unlit", [](scenes::Material& m) { m.unlit = false; });
+        material("normal texture", [](scenes::Material& m) { m.normal_texture = {}; });
+        material("normal scale", [](scenes::Material& m) { m.normal_scale = 1; });
+        material("transform", [](scenes::Material& m) { m.base_color_texture.transform = glm::mat3x2(1, 0, 0, 1, 0, 0); });
+        if (!decorated) continue;
+        material("set", [](scenes::Material& m) { m.base_color_texture.set ^= 1; });
+        vertices("colours", [](scenes::Triangles& t) { t.colors.clear(); });
+        vertices("tangents", [](scenes::Triangles& t) { t.tangents.clear(); });
+    }
+}
+
+// A texel that points up in its image tilts the normal up on the surface, whichever way texture and instance run.
+TEST_F(GBufferTest, normal_textures_point_where_they_say) {
+    const vec3 tilted = glm::normalize(2.0f * vec3(160, 200, 250) / 255.0f - 1.0f);
+    for (const bool tangents : {false, true})
+        for (const bool mirrored : {false, true}) {
+            TestScene test;
+            scenes::Texture t;
+            t.width = t.height = 1, t.rgba = {160, 200, 250, 255};
+            test.scene.textures.push_back(t);
+            test.scene.materials[test.material(vec3(1))].normal_texture = {0};
+            // v falls upwards; mirrored: u falls to the right.
+            test.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 0, mirrored ? vec2(1, 1) : vec2(0, 1), mirrored ? vec2(0, 0) : vec2(1, 0));
+            if (tangents) test.triangles.tangents.assign(4, mirrored ? vec4(-1, 0, 0, -1) : vec4(1, 0, 0, 1));
+            test.scene.cameras = {{"", mat4(1), 0.1f}};
+            test.scene.cameras[0].to_world[3] = vec4(0, 0, 10, 1);
+            const vec3 seen = unpack_direction(run(test, 1, 1).normals[0].x);
+            EXPECT_NEAR(glm::length(seen - tilted * vec3(mirrored ? -1 : 1, 1, 1)), 0, 1e-3) << tangents << mirrored << " " << seen.x << " " << seen.y;
+        }
+}
+
+TEST_F(GBufferTest, coordinates_that_do_not_span_leave_the_normal) {
+    TestScene test;
+    test.textured(random).base_color_texture = {};
+    const vec3 n = glm::normalize(vec3(0.3f, 0.1f, 1));
+    for (const auto& uv : {std::array{vec2(0), vec2(0), vec2(0)}, {vec2(1), vec2(2), vec2(3)}, {vec2(0), vec2(std::nanf("")), vec2(0, 1)}}) {
+        test.triangles = {};
+        for (int k = 0; k < 3; ++k) test.vertex({k == 1 ? 9.0f : -3.0f, k == 2 ? 9.0f : -3.0f, 0}, n, uv[size_t(k)]);
+        test.triangles.triangles.push_back({0, 1, 2, 0});
+        test.look({0, 0, 3}, vec3(0));
+        for (const uvec2& normals : run(test, 2, 2).normals) EXPECT_NEAR(glm::length(unpack_direction(normals.x) - n), 0, 1e-3);
+    }
+}
+
+// A pane of alpha 1/4 in front of another and of the sky: a quarter of the pixels, and 3/16.
+TEST_F(GBufferTest, blended_panes_are_there_for_their_share_of_pixels) {
+    TestScene test;
+    for (int i = 0; i < 2; ++i) {
+        scenes::Material& m = test.scene.materials[test.material(vec3(i == 0, i == 1, 0))];
+        m.alpha = scenes::Material::Alpha::blend, m.base_color.a = 0.25f;
+        test.quad({-9, -9, -float(i)}, {18, 0, 0}, {0, 18, 0}, uint32_t(i));
+    }
+    test.look({0, 0, 3}, vec3(0));
+    const auto got = run(test, 256, 256);
+    size_t first = 0, second = 0;
+    for (const vec4& albedo : got.albedo) first += albedo.x > 0, second += albedo.y > 0;
+    EXPECT_NEAR(first / 65536.0, 0.25, 0.002);
+    EXPECT_NEAR(second / 65536.0, 3 / 16.0, 0.004);
 }
 
 TEST_F(GBufferTest, every_size_of_image) {

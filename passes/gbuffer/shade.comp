@@ -14,7 +14,7 @@ void main() {
         push.positions.at[pixel] = vec4(0.0);
         push.normals.at[pixel] = uvec2(0u);
         push.albedo.at[pixel] = vec4(0.0);
-        push.emitted.at[pixel] = vec4(0.0);
+        push.emitted.at[pixel] = vec4(push.background, 0.0);
         return;
     }
     Surface s = surface_at(push.geometry, hit.triangle, hit.u, hit.v);

@@ -7,32 +7,86 @@
 namespace myriad::passes {
 namespace {
 
-// Appends each texture that a material refers to, once.
-class TexelPacker {
+// Appends each texture that a material refers to, once, and each use of one.
+class TexturePacker {
 public:
-    TexelPacker(const scenes::Scene& scene, std::vector<uint>& texels) : scene_(scene), texels_(texels) {}
+    TexturePacker(const scenes::Scene& scene, const scenes::Triangles& triangles, GeometryData& data)
+        : scene_(scene), sets_(triangles.texcoords1.empty() ? 1 : 2), data_(data) {}
 
-    TextureRef operator()(uint32_t index) {
-        if (index == scenes::none || scene_.textures[index].rgba.empty()) return {};
-        if (const auto known = packed_.find(index); known != packed_.end()) return known->second;
-        if (texels_.empty())
-            for (uint code = 0; code < srgb_table_size; ++code) texels_.push_back(floatBitsToUint(float(srgb_to_linear(uint8_t(code)))));
-        const scenes::Texture& texture = scene_.textures[index];
-        const uint64_t count = uint64_t(texture.width) * texture.height;
-        if (texels_.size() + count > scenes::none) throw InputError(scene_.name + ": its textures have more than 2^32 texels; make them smaller.");
-        const TextureRef ref{uint(texels_.size()), texture.width, texture.height, uint(texture.wrap_u) | uint(texture.wrap_v) << 2};
-        for (uint64_t i = 0; i < count; ++i) {
-            const uint8_t* c = &texture.rgba[4 * i];
-            texels_.push_back(c[0] | uint(c[1]) << 8 | uint(c[2]) << 16 | uint(c[3]) << 24);
-        }
-        return packed_[index] = ref;
+    // Width 0 where there is no texture.
+    TextureRef ref(const scenes::TextureUse& use) {
+        if (use.texture == scenes::none || scene_.textures[use.texture].rgba.empty()) return {};
+        const scenes::Texture& texture = scene_.textures[use.texture];
+        const uint set = std::min(use.set, sets_ - 1);
+        data_.on_set[set] = true;
+        return {.first = first_texel(use.texture),
+                .width = texture.width,
+                .height = texture.height,
+                .use = uint(texture.wrap_u) | uint(texture.wrap_v) << 2 | set << 4,
+                .along_u = use.transform[0],
+                .along_v = use.transform[1],
+                .origin = use.transform[2]};
+    }
+    // Its index among the uses.
+    uint index(const scenes::TextureUse& use) {
+        const TextureRef r = ref(use);
+        if (r.width == 0) return no_texture;
+        data_.textures.push_back(r);
+        return uint(data_.textures.size() - 1);
     }
 
 private:
+    uint first_texel(uint32_t index) {
+        if (const auto known = packed_.find(index); known != packed_.end()) return known->second;
+        std::vector<uint>& texels = data_.texels;
+        if (texels.empty())
+            for (uint code = 0; code < srgb_table_size; ++code) texels.push_back(floatBitsToUint(float(srgb_to_linear(uint8_t(code)))));
+        const scenes::Texture& texture = scene_.textures[index];
+        const uint64_t count = uint64_t(texture.width) * texture.height;
+        if (texels.size() + count > scenes::none) throw InputError(scene_.name + ": its textures have more than 2^32 texels; make them smaller.");
+        const uint first = packed_[index] = uint(texels.size());
+        texels.reserve(first + count);
+        for (uint64_t i = 0; i < count; ++i) {
+            const uint8_t* c = &texture.rgba[4 * i];
+            texels.push_back(c[0] | uint(c[1]) << 8 | uint(c[2]) << 16 | uint(c[3]) << 24);
+        }
+        return first;
+    }
+
     const scenes::Scene& scene_;
-    std::vector<uint>& texels_;
-    std::map<uint32_t, TextureRef> packed_;
+    uint sets_;  // of texture coordinates that there are
+    GeometryData& data_;
+    std::map<uint32_t, uint> packed_;
 };
+
+Material material(const scenes::Material& m, TexturePacker& pack, const std::vector<TextureRef>& textures) {
+    const bool shines = !m.unlit && m.emissive != vec3(0);
+    Material out{.base_color = vec3(m.base_color),
+                 .metallic = m.metallic,
+                 .emission = m.unlit ? vec3(0) : m.emissive,
+                 .normal_scale = m.normal_scale,
+                 .flags = (m.double_sided ? material_double_sided : 0) | (m.unlit ? material_unlit : 0),
+                 .base_color_texture = pack.index(m.base_color_texture),
+                 .metallic_texture = m.unlit ? no_texture : pack.index(m.metallic_roughness_texture),
+                 .emission_texture = shines ? pack.index(m.emissive_texture) : no_texture,
+                 .normal_texture = m.unlit ? no_texture : pack.index(m.normal_texture)};
+    for (uint index : {out.base_color_texture, out.metallic_texture, out.emission_texture, out.normal_texture})
+        if (index != no_texture && texture_set(textures[index]) == 0) out.flags |= material_on_set0;
+    return out;
+}
+
+OpacityMaterial alpha(const scenes::Material& m, TexturePacker& pack) {
+    using Alpha = scenes::Material::Alpha;
+    if (m.alpha == Alpha::opaque) return compute::Opacity::opaque();
+    // A cutoff of 0 or less leaves nothing out.
+    return {.texture = pack.ref(m.base_color_texture), .alpha = m.base_color.a, .cutoff = m.alpha == Alpha::mask ? std::max(m.alpha_cutoff, 0.0f) : opacity_blended};
+}
+
+// Empty where the scene need not have it.
+template <class T>
+engine::Array<T> upload_if(bool needed, engine::Device& device, std::string name, const std::vector<T>& values) {
+    return engine::upload(device, "scene", std::move(name), needed ? values : std::vector<T>{});
+}
 
 }  // namespace
 
@@ -54,48 +108,73 @@ compute::WorldTriangles world_triangles(const scenes::Triangles& triangles) {
 
 GeometryData geometry_data(const scenes::Scene& scene, const scenes::Triangles& triangles) {
     GeometryData data;
-    data.attributes.resize(triangles.positions.size());
-    for (size_t i = 0; i < data.attributes.size(); ++i) data.attributes[i] = {triangles.normals[i], triangles.texcoords[i]};
-    TexelPacker pack(scene, data.texels);
-    for (const scenes::Material& m : scene.materials)
-        data.materials.push_back({.base_color = m.base_color,
-                                  .emission = m.emissive,
-                                  .metallic = m.metallic,
-                                  .base_color_texture = pack(m.base_color_texture.texture),
-                                  .metallic_texture = pack(m.metallic_roughness_texture.texture),
-                                  .emission_texture = m.emissive == vec3(0) ? TextureRef{} : pack(m.emissive_texture.texture),
-                                  .double_sided = m.double_sided});
+    TexturePacker pack(scene, triangles, data);
+    for (const scenes::Material& m : scene.materials) {
+        data.materials.push_back(material(m, pack, data.textures));
+        data.alphas.push_back(alpha(m, pack));
+        data.bends = data.bends || data.materials.back().normal_texture != no_texture;
+    }
+    data.world = world_triangles(triangles);
+    data.world.opacity = {triangles.triangles, triangles.texcoords, triangles.texcoords1, triangles.colors, data.alphas, data.texels};
     return data;
 }
 
-Geometry::Geometry(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles)
-    : Geometry(device, triangles, geometry_data(scene, triangles)) {}
-
 Geometry::Geometry(engine::Device& device, const scenes::Triangles& triangles, const GeometryData& data)
     : positions_(engine::upload(device, "scene", "vertex positions", triangles.positions)),
+      normals_(engine::upload(device, "scene", "vertex normals", triangles.normals)),
       triangles_(engine::upload(device, "scene", "triangles", triangles.triangles)),
-      instances_(engine::upload(device, "scene", "instances", world_triangles(triangles).instances)),
-      attributes_(engine::upload(device, "scene", "vertex attributes", data.attributes)),
+      texcoords_(upload_if(data.on_set[0], device, "texture coordinates 0", triangles.texcoords)),
+      texcoords1_(upload_if(data.on_set[1], device, "texture coordinates 1", triangles.texcoords1)),
+      colors_(engine::upload(device, "scene", "vertex colours", triangles.colors)),
+      tangents_(upload_if(data.bends, device, "vertex tangents", triangles.tangents)),
       materials_(engine::upload(device, "scene", "materials", data.materials)),
-      texels_(engine::upload(device, "scene", "texels", data.texels)) {
+      alphas_(engine::upload(device, "scene", "alphas of materials", data.alphas)),
+      textures_(engine::upload(device, "scene", "textures of materials", data.textures)),
+      texels_(engine::upload(device, "scene", "texels", data.texels)),
+      instances_(engine::upload(device, "scene", "instances", data.world.instances)) {
     engine::Recorder addresses(device);
     arrays_ = engine::upload(device, "scene", "geometry arrays", std::vector<GeometryArrays>{read_arrays(addresses)});
+    opacity_arrays_ = engine::upload(device, "scene", "opacity arrays", std::vector<OpacityArrays>{read_opacity(addresses)});
 }
 
 GeometryArrays Geometry::read_arrays(engine::Recorder& recorder) const {
     return {.positions = recorder.read(positions_),
             .triangles = recorder.read(triangles_),
-            .attributes = recorder.read(attributes_),
+            .normals = recorder.read(normals_),
+            .texcoords = recorder.read(texcoords_),
+            .texcoords1 = recorder.read(texcoords1_),
+            .colors = recorder.read(colors_),
+            .tangents = recorder.read(tangents_),
             .materials = recorder.read(materials_),
-            .instances = instances() ? recorder.read(instances_) : Instances{},
+            .textures = recorder.read(textures_),
             .texels = recorder.read(texels_),
+            .instances = recorder.read(instances_),
             .instance_count = uint(instances_.count()),
-            .padding = 0};
+            .has = (colors_.count() ? geometry_colors : 0) | (tangents_.count() ? geometry_tangents : 0)};
+}
+
+OpacityArrays Geometry::read_opacity(engine::Recorder& recorder) const {
+    return {.triangles = recorder.read(triangles_),
+            .texcoords = recorder.read(texcoords_),
+            .texcoords1 = recorder.read(texcoords1_),
+            .colors = recorder.read(colors_),
+            .materials = recorder.read(alphas_),
+            .texels = recorder.read(texels_),
+            .instances = recorder.read(instances_),
+            .instance_count = uint(instances_.count()),
+            .has_colors = colors_.count() > 0};
 }
 
 GeometryRef Geometry::read(engine::Recorder& recorder) const {
     read_arrays(recorder);  // kernels find these addresses in memory: they are declared all the same
     return recorder.read(arrays_);
+}
+
+compute::OpacityReader Geometry::opacity() const {
+    return [this](engine::Recorder& recorder) {
+        read_opacity(recorder);
+        return OpacityRef{recorder.read(opacity_arrays_)};
+    };
 }
 
 }  // namespace myriad::passes

@@ -1,59 +1,59 @@
-// The scene's triangles, materials and textures as kernels see them, and the formulae of texture filtering.
+// The scene's triangles, materials and textures as kernels see them, and the formulae of surfaces.
 #ifndef MYRIAD_PASSES_GEOMETRY_IO_H
 #define MYRIAD_PASSES_GEOMETRY_IO_H
 
+#include "compute/instances/instances.h"
 #include "compute/raytrace/raytrace_io.h"
 
 MYRIAD_BEGIN
-const uint wrap_repeat = 0u, wrap_clamp = 1u, wrap_mirror = 2u;  // as scenes::Texture::Wrap
+const uint no_texture = 0xffffffffu;
+const uint material_on_set0 = 1u;      // some texture of it is on set 0 of the coordinates
+const uint material_double_sided = 2u;
+const uint material_unlit = 4u;
 
-// Where a texture lies among the texels; width 0: there is none.
-struct TextureRef {
-    uint first;          // index of its first word in GeometryArrays::texels
-    uint width, height;
-    uint wrap;           // of u, and of v << 2
-};
-
-// Diffuse only: what scenes::Material says of roughness, and the specular lobe, are not read yet.
+// Diffuse only: what scenes::Material says of roughness, and the specular lobe, are not read yet. Alpha is in OpacityMaterial.
+// Textures are elements of GeometryArrays::textures, read only where there are any.
 struct Material {
-    vec4 base_color;
-    vec3 emission;       // radiance
+    vec3 base_color;
     float metallic;
-    TextureRef base_color_texture, metallic_texture, emission_texture;
-    uint double_sided;
+    vec3 emission;       // radiance
+    float normal_scale;
+    uint flags;
+    uint base_color_texture, metallic_texture, emission_texture, normal_texture;
 };
 MYRIAD_ARRAY(Materials, Material, 4)
+MYRIAD_ARRAY(Vec3s, vec3, 4)
 
-struct VertexAttributes {
-    vec3 normal;
-    vec2 texcoord;
-};
-MYRIAD_ARRAY(VertexPositions, vec3, 4)
-MYRIAD_ARRAY(VertexAttributesArray, VertexAttributes, 4)
+const uint geometry_colors = 1u, geometry_tangents = 2u;
 
-// Where the scene's arrays are. Positions are apart from the other attributes because trees and deformation need only them.
+// Where everything is. An array an attribute, because trees, deformation and most scenes need only some; what no material
+// needs is empty and must not be read.
 struct GeometryArrays {
-    VertexPositions positions;
+    Vec3s positions;
     Uint4s triangles;    // three vertices, then the material
-    VertexAttributesArray attributes;
+    Vec3s normals;
+    Vec2s texcoords, texcoords1;
+    Float4s colors;      // if `has` says so
+    Float4s tangents;    // likewise; xyz, and the sign of the bitangent
     Materials materials;
-    Instances instances; // where the scene shares triangles: `triangles` and vertices are then a mesh's own
+    TextureRefs textures;
     Uints texels;        // 256 floats that decode sRGB, then RGBA8 words, R lowest; empty when nothing is textured
+    Instances instances; // where the scene shares triangles: `triangles` and vertices are then a mesh's own
     uint instance_count;
-    uint padding;
+    uint has;
 };
-const uint srgb_table_size = 256u;
 // What goes into push constants, which are short: the address of that one struct, `.at[0]`.
 MYRIAD_ARRAY(GeometryRef, GeometryArrays, 8)
+const uint srgb_table_size = 256u;
 
 // A point of a triangle.
 struct Surface {
     vec3 position;
     vec3 geometric_normal;  // unit, on the side from which the corners go counter-clockwise
     vec3 shading_normal;    // unit, on the same side
-    vec3 albedo;            // diffuse: base colour * (1 - metallic)
-    vec3 emission;          // radiance, from the front; from both sides where double-sided
-    bool double_sided;
+    vec3 albedo;            // diffuse: base colour * (1 - metallic); 0 where unlit
+    vec3 emission;          // radiance, from the front; from both sides where double-sided. Unlit: the base colour, for the eye only
+    bool double_sided;      // or unlit
     float reach;            // of the triangle, for ray_origin
 };
 
@@ -79,39 +79,29 @@ MYRIAD_FN Surface face_towards(Surface s, vec3 direction) {
     return s;
 }
 
-// A texel coordinate in [0, size), from one that may be outside by up to a period of the wrap mode.
-MYRIAD_FN uint wrap_texel(int i, uint size, uint mode) {
-    const int n = int(size);
-    if (mode == wrap_clamp) return uint(clamp(i, 0, n - 1));
-    if (mode == wrap_mirror) {
-        const int folded = i < 0 ? i + 2 * n : i >= 2 * n ? i - 2 * n : i;
-        return uint(folded < n ? folded : 2 * n - 1 - folded);
-    }
-    return uint(i < 0 ? i + n : i >= n ? i - n : i);
+// The direction in which u grows over a triangle, unit, and in w the side of the bitangent: over the normal by winding, it is
+// w * cross(normal, tangent). +Y of a normal texture is up in its image, where v falls, as in glTF. xyz = 0: there is none,
+// for the texture coordinates do not span the triangle.
+MYRIAD_FN vec4 tangent_of(vec3 p0, vec3 p1, vec3 p2, vec2 t0, vec2 t1, vec2 t2) {
+    const vec2 a = t1 - t0;
+    const vec2 b = t2 - t0;
+    const float det = a.x * b.y - b.x * a.y;
+    if (!(abs(det) > 0.0f)) return vec4(0.0f);
+    const float side = det > 0.0f ? 1.0f : -1.0f;
+    return vec4(unit_or(side * (b.y * (p1 - p0) - a.y * (p2 - p0)), vec3(0.0f)), -side);
 }
 
-// The two texels that a bilinear filter blends along one axis, whose centres are at (i + 0.5) / size, as in glTF.
-struct TexelPair {
-    uint low, high;
-    float weight;        // of `high`
-};
-MYRIAD_FN TexelPair texel_pair(float t, uint size, uint mode) {
-    if (!(abs(t) < 16777216.0f)) t = 0.0f;                              // no fraction is left there, or not a number
-    if (mode == wrap_repeat) t -= floor(t);
-    if (mode == wrap_mirror) t -= 2.0f * floor(0.5f * t);
-    if (mode == wrap_clamp) t = clamp(t, 0.0f, 1.0f);
-    const float x = t * float(size) - 0.5f;
-    const float whole = floor(x);
-    TexelPair pair;
-    pair.low = wrap_texel(int(whole), size, mode);
-    pair.high = wrap_texel(int(whole) + 1, size, mode);
-    pair.weight = x - whole;
-    return pair;
+// A unit normal bent by a texel of a normal texture, given in [0, 1].
+MYRIAD_FN vec3 bent_normal(vec3 normal, vec4 tangent, vec3 texel, float scale) {
+    const vec3 t = unit_or(vec3(tangent) - dot(vec3(tangent), normal) * normal, vec3(0.0f));
+    const vec3 bend = 2.0f * texel - 1.0f;
+    if (dot(t, t) == 0.0f) return normal;
+    return unit_or(scale * (bend.x * t + bend.y * tangent.w * cross(normal, t)) + bend.z * normal, normal);
 }
 MYRIAD_END
 
 #ifdef __cplusplus
-static_assert(sizeof(myriad::Material) == 84 && sizeof(myriad::VertexAttributes) == 20 && sizeof(myriad::GeometryArrays) == 56 && sizeof(myriad::GeometryRef) == 8);
+static_assert(sizeof(myriad::Material) == 52 && sizeof(myriad::GeometryArrays) == 96 && sizeof(myriad::GeometryRef) == 8);
 #endif
 
 #endif

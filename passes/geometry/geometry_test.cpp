@@ -70,9 +70,9 @@ TEST(Geometry, textures_are_packed_once_and_only_when_used) {
     test.scene.materials[test.material(vec3(1))].emissive_texture = {0};  // black emission: not needed
     const GeometryData data = geometry_data(test.scene, test.triangles);
     EXPECT_EQ(data.texels.size(), srgb_table_size + 5);
-    EXPECT_EQ(data.materials[0].base_color_texture.width, 0u);
-    EXPECT_EQ(data.materials[1].base_color_texture.first, data.materials[2].metallic_texture.first);
-    EXPECT_EQ(data.materials[3].emission_texture.width, 0u);
+    EXPECT_EQ(data.materials[0].base_color_texture, no_texture);
+    EXPECT_EQ(data.textures[data.materials[1].base_color_texture].first, data.textures[data.materials[2].metallic_texture].first);
+    EXPECT_EQ(data.materials[3].emission_texture, no_texture);
     EXPECT_EQ(uintBitsToFloat(data.texels[255]), 1.0f);
     EXPECT_EQ(uintBitsToFloat(data.texels[0]), 0.0f);
 }
@@ -102,7 +102,7 @@ TEST(Lights, power_of_each_kind) {
     test.scene.textures.push_back(half);
     test.scene.materials[textured].emissive_texture = {0};
 
-    const auto power = [&] { return light_data(test.scene, test.triangles).power; };
+    const auto power = [&] { return light_data(test.scene, test.triangles, geometry_data(test.scene, test.triangles)).power; };
     EXPECT_EQ(power(), 0);
     test.quad({0, 0, 0}, {2, 0, 0}, {0, 3, 0}, plain);
     EXPECT_EQ(power(), 0);
@@ -122,7 +122,7 @@ TEST(Lights, power_of_each_kind) {
     test.quad({0, 0, 0}, {0, 0, 0}, {0, 1, 0}, lamp);  // no area
     EXPECT_NEAR(power(), sum, 1e-4);
 
-    const LightData data = light_data(test.scene, test.triangles);
+    const LightData data = light_data(test.scene, test.triangles, geometry_data(test.scene, test.triangles));
     EXPECT_EQ(data.punctual, 3u);
     ASSERT_EQ(data.lights.size(), 3u + 6);
     EXPECT_EQ(data.lights.back().cdf, 1.0f);
@@ -136,7 +136,7 @@ TEST(Lights, lights_without_power_have_no_share) {
     TestScene test;
     test.material(vec3(1));
     for (float intensity : {0.0f, 1.0f, 0.0f, 2.0f, 0.0f}) test.light(scenes::Light::Type::point, vec3(0), {0, 0, -1}, vec3(intensity));
-    const LightData data = light_data(test.scene, test.triangles);
+    const LightData data = light_data(test.scene, test.triangles, geometry_data(test.scene, test.triangles));
     const std::vector<float> expected{0, float(1.0 / 3), float(1.0 / 3), 1, 1};
     for (size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(data.lights[i].cdf, expected[i]) << i;
 }
@@ -146,7 +146,7 @@ TEST(Lights, a_hundred_thousand_emitters) {
     test.material(vec3(1), vec3(1));
     std::mt19937 random(1);
     test.soup(100000, 5, random);
-    const LightData data = light_data(test.scene, test.triangles);
+    const LightData data = light_data(test.scene, test.triangles, geometry_data(test.scene, test.triangles));
     double sum = 0, worst = 0;
     for (size_t i = 0; i < data.lights.size(); ++i) {
         sum += pi_d * double(data.lights[i].extent.x) / data.power;

@@ -4,7 +4,6 @@
 #include <numbers>
 
 #include "engine/transfer.hpp"
-#include "passes/geometry/geometry.hpp"
 
 namespace myriad::passes {
 namespace {
@@ -39,19 +38,70 @@ Light punctual_light(const scenes::Light& from, const scenes::Triangles& triangl
     return light;
 }
 
-// The emission of a material, with the mean of all texels standing for its texture.
-dvec3 mean_radiance(const scenes::Scene& scene, const scenes::Material& material) {
-    dvec3 radiance(material.emissive);
-    if (radiance == dvec3(0) || material.emissive_texture.texture == scenes::none) return radiance;
-    const scenes::Texture& texture = scene.textures[material.emissive_texture.texture];
-    if (texture.rgba.empty()) return radiance;
-    double linear[256];
-    for (int code = 0; code < 256; ++code) linear[code] = srgb_to_linear(uint8_t(code));
-    dvec3 sum(0);
-    for (size_t i = 0; i + 3 < texture.rgba.size(); i += 4)
-        sum += dvec3(linear[texture.rgba[i]], linear[texture.rgba[i + 1]], linear[texture.rgba[i + 2]]);
-    return radiance * sum / double(texture.rgba.size() / 4);
-}
+// What emissive triangles shine with in the mean.
+class Radiometer {
+public:
+    Radiometer(const scenes::Triangles& triangles, const GeometryData& data) : triangles_(triangles), data_(data) {
+        for (const Material& material : data.materials) whole_.push_back(whole(material));
+        uint64_t looked_at = 0;
+        for (const uvec4& t : triangles.triangles) looked_at += shines(t.w) && varies(t.w);
+        while (side_ > 2 && uint64_t(side_) * side_ * looked_at > most_points) side_ /= 2;
+    }
+
+    bool shines(uint material) const { return whole_[material] != dvec3(0); }
+    bool any_shines() const { return std::any_of(whole_.begin(), whole_.end(), [](const dvec3& r) { return r != dvec3(0); }); }
+
+    // The mean over a grid of points of the triangle, and a little of the mean of the whole texture: a triangle all of whose points
+    // are dark may shine between them, and what has no power is never chosen.
+    dvec3 mean(uint id) const {
+        const compute::OpacityPlace at = data_.world.place(id);
+        uvec4 corners = triangles_.triangles[at.triangle];
+        if (at.mirrored) std::swap(corners.y, corners.z);
+        if (!varies(corners.w)) return whole_[corners.w];
+        if (data_.world.opacity.kind(at.triangle) == compute::Opacity::Kind::nowhere) return dvec3(0);
+        dvec3 sum(0);
+        for (int i = 0; i < side_; ++i)
+            for (int j = 0; j < side_; ++j) {
+                float u = (float(i) + 0.5f) / float(side_), v = (float(j) + 0.5f) / float(side_);
+                if (u + v > 1) u = 1 - u, v = 1 - v;
+                sum += double(data_.world.mean_opacity(id, u, v)) * at_point(corners, u, v);
+            }
+        return 0.9 * sum / double(side_ * side_) + 0.1 * whole_[corners.w];
+    }
+
+private:
+    static constexpr uint64_t most_points = 1 << 22;
+
+    bool varies(uint material) const { return data_.materials[material].emission_texture != no_texture || data_.alphas[material].cutoff != 0; }
+
+    dvec3 texel(uint word) const {
+        const auto linear = [&](uint code) { return double(uintBitsToFloat(data_.texels[code & 255u])); };
+        return {linear(word), linear(word >> 8), linear(word >> 16)};
+    }
+    dvec3 whole(const Material& material) const {
+        const dvec3 radiance(material.emission);
+        if (material.emission_texture == no_texture) return radiance;
+        const TextureRef& t = data_.textures[material.emission_texture];
+        dvec3 sum(0);
+        const uint64_t count = uint64_t(t.width) * t.height;
+        for (uint64_t i = 0; i < count; ++i) sum += texel(data_.texels[t.first + i]);
+        return radiance * sum / double(count);
+    }
+    dvec3 at_point(const uvec4& corners, float u, float v) const {
+        const Material& material = data_.materials[corners.w];
+        if (material.emission_texture == no_texture) return dvec3(material.emission);
+        const TextureRef& t = data_.textures[material.emission_texture];
+        const auto& of = texture_set(t) == 0 ? triangles_.texcoords : triangles_.texcoords1;
+        const TexelQuad q = texel_quad(t, texture_place(t, (1 - u - v) * of[corners.x] + u * of[corners.y] + v * of[corners.z]));
+        const auto row = [&](uint left, uint right) { return glm::mix(texel(data_.texels[left]), texel(data_.texels[right]), double(q.weight.x)); };
+        return dvec3(material.emission) * glm::mix(row(q.word.x, q.word.y), row(q.word.z, q.word.w), double(q.weight.y));
+    }
+
+    const scenes::Triangles& triangles_;
+    const GeometryData& data_;
+    std::vector<dvec3> whole_;  // of materials, with the mean of all texels standing for the texture
+    int side_ = 8;              // of the grid
+};
 
 double area_of(const Corners& c) {
     const dvec3 p(c.p0);
@@ -60,7 +110,7 @@ double area_of(const Corners& c) {
 
 }  // namespace
 
-LightData light_data(const scenes::Scene& scene, const scenes::Triangles& triangles) {
+LightData light_data(const scenes::Scene& scene, const scenes::Triangles& triangles, const GeometryData& geometry) {
     LightData data;
     for (const scenes::Light& light : scene.lights) {
         data.lights.push_back(punctual_light(light, triangles));
@@ -68,17 +118,16 @@ LightData light_data(const scenes::Scene& scene, const scenes::Triangles& triang
     }
     data.punctual = uint32_t(data.lights.size());
 
-    std::vector<dvec3> radiance;
-    for (const scenes::Material& material : scene.materials) radiance.push_back(mean_radiance(scene, material));
-    const bool emits = std::any_of(radiance.begin(), radiance.end(), [](const dvec3& r) { return r != dvec3(0); });
-    if (emits) world_triangles(triangles).for_each([&](uint32_t i, uint32_t stored, const Corners& corners) {
+    const Radiometer radiometer(triangles, geometry);
+    if (radiometer.any_shines()) geometry.world.for_each([&](uint32_t i, uint32_t stored, const Corners& corners) {
         const uint32_t material = triangles.triangles[stored].w;
-        if (radiance[material] == dvec3(0)) return;
+        if (!radiometer.shines(material)) return;
+        const dvec3 radiance = radiometer.mean(i);
         const double area = (scene.materials[material].double_sided ? 2 : 1) * area_of(corners);
-        const double power = mean(radiance[material]) * std::numbers::pi * area;
+        const double power = mean(radiance) * std::numbers::pi * area;
         if (!(power > 0)) return;
-        data.lights.push_back({.position = vec3(0), .type = light_triangle, .direction = vec3(0), .cdf = 0,
-                               .intensity = vec3(radiance[material]), .triangle = uint(i), .extent = vec3(float(area), 0, 0), .cos_outer = 0});
+        data.lights.push_back({.position = vec3(0), .type = light_triangle, .direction = vec3(0), .cdf = 0, .intensity = vec3(radiance),
+                               .triangle = uint(i), .extent = vec3(float(area), 0, 0), .cos_outer = 0});
         data.powers.push_back(power);
     });
     for (double power : data.powers) data.power += power;
@@ -100,8 +149,8 @@ void share_out(std::vector<Light>& lights, const std::vector<double>& weights) {
     }
 }
 
-LightTable::LightTable(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles)
-    : LightTable(device, light_data(scene, triangles)) {}
+LightTable::LightTable(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles, const GeometryData& geometry)
+    : LightTable(device, light_data(scene, triangles, geometry)) {}
 
 LightTable::LightTable(engine::Device& device, LightData data)
     : data_(std::move(data)), lights_(engine::upload(device, "scene", "lights", data_.lights)) {}

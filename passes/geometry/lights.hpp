@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/recorder.hpp"
+#include "passes/geometry/geometry.hpp"
 #include "passes/geometry/light_io.h"
 #include "scenes/scene.hpp"
 
@@ -13,14 +14,15 @@ struct LightData {
     uint32_t punctual = 0;       // the first so many; the rest are emissive triangles
     double power = 0;            // of all
 };
-LightData light_data(const scenes::Scene& scene, const scenes::Triangles& triangles);
+// `geometry`: what geometry_data makes of the same.
+LightData light_data(const scenes::Scene& scene, const scenes::Triangles& triangles, const GeometryData& geometry);
 
 // Sets each light's cdf, so that lights are chosen in proportion to these weights, a light's share of the whole each.
 void share_out(std::vector<Light>& lights, const std::vector<double>& weights);
 
 class LightTable {
 public:
-    LightTable(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles);
+    LightTable(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles, const GeometryData& geometry);
 
     Ref<Light> read(engine::Recorder& recorder) const { return recorder.read(lights_); }
 

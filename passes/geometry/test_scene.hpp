@@ -40,6 +40,34 @@ struct TestScene {
         return uint32_t(triangles.positions.size() - 1);
     }
 
+    // Gives all vertices that there are colours, a second set and tangents, some of which there are none of.
+    void decorate(std::mt19937& random) {
+        std::uniform_real_distribution<float> unit(0, 1);
+        const auto any = [&] { return vec3(unit(random), unit(random), unit(random)); };
+        for (size_t i = triangles.colors.size(); i < triangles.positions.size(); ++i) {
+            triangles.colors.emplace_back(any(), random() % 3 ? 1 : unit(random));
+            triangles.texcoords1.push_back(2.0f * vec2(any()));
+            const bool none = i / 3 % 4 == 0;
+            triangles.tangents.emplace_back(none ? vec3(0) : glm::normalize(any() - 0.5f), random() % 2 ? 1 : -1);
+        }
+    }
+
+    // A material that has a texture of noise in every place, with transforms, on both sets.
+    scenes::Material& textured(std::mt19937& random, scenes::Texture::Wrap u = {}, scenes::Texture::Wrap v = {}) {
+        std::uniform_real_distribution<float> unit(-1, 1);
+        const uint32_t index = material({0.9f, 1, 0.8f}, {1, 1, 2}, u == scenes::Texture::Wrap::mirror);
+        const auto use = [&](uint32_t width, uint32_t height) {
+            scenes::TextureUse to{texture(width, height, random, u, v), uint32_t(random() % 2)};
+            if (random() % 2) to.transform = glm::mat3x2(vec2(1, unit(random)), vec2(unit(random), 1), vec2(unit(random), unit(random)));
+            return to;
+        };
+        scenes::Material& m = scene.materials[index];
+        m.metallic = 0.6f;
+        m.base_color_texture = use(7, 5), m.metallic_roughness_texture = use(1, 3), m.emissive_texture = use(16, 1), m.normal_texture = use(4, 4);
+        m.normal_scale = 0.5f;
+        return m;
+    }
+
     // Its front is where `along` turns to `up` counter-clockwise. Texture coordinates go from uv0 to uv1.
     void quad(const vec3& corner, const vec3& along, const vec3& up, uint32_t material, vec2 uv0 = vec2(0), vec2 uv1 = vec2(1)) {
         const vec3 n = glm::normalize(glm::cross(along, up));
@@ -82,13 +110,15 @@ struct TestScene {
 };
 
 struct UploadedScene {
+    GeometryData data;
     Geometry geometry;
     compute::Bvh bvh;
     LightTable lights;
 
     UploadedScene(engine::Device& device, const TestScene& from)
-        : geometry(device, from.scene, from.triangles), bvh(device, world_triangles(from.triangles)),
-          lights(device, from.scene, from.triangles) {}
+        : data(geometry_data(from.scene, from.triangles)), geometry(device, from.triangles, data),
+          bvh(device, data.world, compute::BvhQuality::quick, geometry.opacity()),
+          lights(device, from.scene, from.triangles, data) {}
 };
 
 }  // namespace myriad::passes

@@ -45,6 +45,8 @@ void main() {
     const uint map = (g.view - push.first_view) * map_texels(push.map_size);
     for (; drawn != 0u; drawn &= drawn - 1u) {
         const uint slot = 8u * g.block + findLSB(drawn);
-        draw(view, bsh_decode(frame, push.tree.spheres.at[slot]), push.tree.cones.at[slot], push.tree.boxes.at[slot], map);
+        const uvec2 box = push.tree.boxes.at[slot];
+        if (!opacity_in_view(bsh_missing(box), g.view)) continue;
+        draw(view, bsh_decode(frame, push.tree.spheres.at[slot]), push.tree.cones.at[slot], box, map);
     }
 }

@@ -4,6 +4,7 @@
 
 #include "compute/bsh/bsh_io.h"
 #include "compute/manylods/cut_io.h"
+#include "compute/opacity/opacity_io.h"
 #include "compute/views/paraboloid.h"
 
 MYRIAD_BEGIN

@@ -29,7 +29,7 @@ std::vector<uint> splat_ref(const compute::BshArrays& tree, std::span<const uvec
     for (const uvec2& code : groups) {
         const CutGroup g = cut_unpack(code);
         for (uint slot = 8 * g.block; slot < 8 * g.block + 8; ++slot)
-            if (g.drawn >> slot % 8 & 1)
+            if ((g.drawn >> slot % 8 & 1) && opacity_in_view(bsh_missing(tree.boxes[slot]), g.view))
                 draw(splat_of(views[g.view], tree.sphere(slot), tree.cones[slot], tree.boxes[slot]), map_size,
                      &atlas[size_t(g.view - first_view) * map_texels(map_size)]);
     }

@@ -37,17 +37,17 @@ protected:
     // A scene and its tree on the device, and the tree read back.
     struct Tree {
         TestScene scene;
-        engine::Array<vec3> positions;
-        engine::Array<uvec4> triangles;
+        std::unique_ptr<UploadedScene> uploaded;
         Bsh bsh;
         BshArrays host;
     };
     Tree grow(const TestScene& scene, uint32_t log2_samples) {
-        const scenes::Triangles& t = scene.triangles;
-        Tree tree{scene, on_device(t.positions), on_device(t.triangles), Bsh(device, {t.positions, t.triangles}, log2_samples, 1), {}};
+        auto uploaded = std::make_unique<UploadedScene>(device, scene);
+        const compute::WorldTriangles& world = uploaded->data.world;
+        Tree tree{scene, std::move(uploaded), Bsh(device, world, log2_samples, 1), {}};
         if (tree.bsh.empty()) return tree;
         engine::Recorder recorder(device);
-        tree.bsh.refit(recorder, tree.positions, tree.triangles);
+        tree.bsh.refit(recorder, tree.uploaded->geometry.positions(), tree.uploaded->geometry.triangles(), nullptr, tree.uploaded->geometry.opacity());
         recorder.submit_and_wait();
         tree.host = compute::bsh_download(device, tree.bsh);
         return tree;
@@ -118,6 +118,37 @@ TEST_F(SplatTest, cuts_of_every_map_size) {
     for (uint size : {2u, 3u, 16u, 31u, 64u}) {
         SCOPED_TRACE(size);
         for (float epsilon : {0.3f, 2.0f}) EXPECT_GT(check(tree, random_views(9, 1.5f), epsilon, size), 0.2);
+    }
+}
+
+// A pane of alpha 0.4 fills two fifths of the maps, and each wholly or not at all, at every level of detail and every stride of views.
+TEST_F(SplatTest, blended_surfaces_are_there_in_their_share_of_views) {
+    TestScene scene;
+    scenes::Material& m = scene.scene.materials[scene.material(vec3(1))];
+    m.alpha = scenes::Material::Alpha::blend, m.base_color.a = 0.4f;
+    scene.quad({-9, 1, -9}, {0, 0, 18}, {18, 0, 0}, 0);
+    scene.soup(30, 1, random);
+    const Tree tree = grow(scene, 10);
+    EXPECT_GT(check(tree, random_views(40, 1), 1, 16), 0.2);
+
+    scene.triangles.triangles.resize(2);  // the quad alone
+    const Tree pane = grow(scene, 10);
+    const std::vector<View> views(2048, view(vec3(0), {0, 1, 0}, pi / 2));
+    for (float epsilon : {0.5f, 4.0f}) {
+        const auto atlas = splat(pane, cut(pane, views, epsilon, 8), views, 8, {});
+        std::vector<uint> covered;
+        for (size_t v = 0; v < views.size(); ++v)
+            covered.push_back(uint(128 - std::count(&atlas[v * 128], &atlas[v * 128] + 128, atlas_nothing)));
+        const uint all = *std::max_element(covered.begin(), covered.end());
+        EXPECT_GT(all, 20u);
+        for (size_t stride : {1u, 4u, 16u, 64u}) {
+            size_t shown = 0, of = 0;
+            for (size_t v = 1; v < views.size(); v += stride) {
+                ASSERT_TRUE(covered[v] == 0 || covered[v] == all);
+                shown += covered[v] == all, ++of;
+            }
+            EXPECT_NEAR(double(shown) / double(of), 0.4, 0.03) << stride;
+        }
     }
 }
 

@@ -55,6 +55,8 @@ void main() {
 
     if (light.type == light_triangle) {
         const vec2 place = triangle_point(x.xy);
+        // Where a cut-out is not, it does not shine; the others keep their flux, for the choice knows the whole area.
+        if (trace_asks && !opacity_is_there(push.on.bvh.opacity, light.triangle, place.x, place.y, trace_dice)) return;
         Surface s = surface_at(push.on.geometry, light.triangle, place.x, place.y);
         // What the choice of the light left over chooses the side.
         if (s.double_sided && (selection - before) / share >= 0.5) s.geometric_normal = -s.geometric_normal;

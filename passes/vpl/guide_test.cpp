@@ -35,7 +35,7 @@ protected:
         return {engine::download(device, pass.vpls(), count[0]), guided ? pass.prepared_paths() : pass.sure_paths(scene.lights, bounces)};
     }
     Result run(const UploadedScene& scene, uint32_t max_vpls, uint32_t bounces, bool guided = true, uint32_t seed = 1) {
-        VplPass pass(device, max_vpls);
+        VplPass pass(device, max_vpls, scene.bvh.constants());
         return run(scene, pass, bounces, seed, guided);
     }
 
@@ -86,7 +86,7 @@ protected:
                                 std::array<size_t, 2>& alive) {
         const UploadedScene scene(device, test);
         for (const bool guided : {false, true}) {
-            VplPass pass(device, 4096);
+            VplPass pass(device, 4096, scene.bvh.constants());
             const Result result = run(scene, pass, bounces, 1, guided);
             use[guided] = use_of(scene, result.vpls), alive[guided] = result.vpls.size();
             engine::Recorder recorder(device);
@@ -118,7 +118,7 @@ TEST_F(GuideTest, the_sum_of_fluxes_is_unbiased) {
     const UploadedScene scene(device, test);
     dvec3 sum[2][bounces + 1] = {}, squares[2][bounces + 1] = {};
     for (const bool guided : {false, true}) {
-        VplPass pass(device, 256);
+        VplPass pass(device, 256, scene.bvh.constants());
         for (uint32_t seed = 0; seed < seeds; ++seed) {
             dvec3 flux[bounces + 1] = {};
             for (const Vpl& v : run(scene, pass, bounces, seed, guided).vpls) flux[v.bounce] += dvec3(v.flux);
@@ -154,7 +154,7 @@ TEST_F(GuideTest, equal_the_twin) {
     test.light(Type::spot, {2, 3, 2}, {1, 1, 0.5f}, vec3(1), 0.2f, 1.2f);
     test.quad({1, 3.9f, 0}, {1, 0, 0}, {0, 0, 1}, test.material(vec3(0.5f), vec3(0.2f)));
     const UploadedScene scene(device, test);
-    VplPass pass(device, 1000);
+    VplPass pass(device, 1000, scene.bvh.constants());
     const Result got = run(scene, pass, 2, 5, true);
     const auto expected = vpl_ref(test.scene, test.triangles, 1000, 2, 5, &pass.guide()->data(), got.paths);
     ASSERT_NEAR(double(got.vpls.size()), double(expected.size()), 5);
@@ -262,7 +262,7 @@ TEST_F(GuideTest, room_that_does_not_suffice_is_reported) {
     closed.quad({1, 0.5f, 2}, {0, 0, 1}, {1, 0, 0}, 0);
     open.triangles.triangles.resize(2);  // the floor
     const UploadedScene one(device, open), two(device, closed);
-    VplPass pass(device, 300);
+    VplPass pass(device, 300, one.bvh.constants());
     engine::Recorder recorder(device);
     pass.prepare(recorder, one.geometry, one.bvh, one.lights, 3, 1);
     pass.record(recorder, two.geometry, two.bvh, two.lights, 3, 1);

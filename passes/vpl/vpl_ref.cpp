@@ -27,7 +27,8 @@ GuidedPlace guided_place_ref(const GuideData& guide, uint32_t light, const vec2&
 
 std::vector<Vpl> vpl_ref(const scenes::Scene& scene, const scenes::Triangles& triangles, uint32_t max_vpls, uint32_t bounces, uint32_t seed,
                          const GuideData* guide, uint32_t guided_paths) {
-    LightData table = light_data(scene, triangles);
+    LightData table = light_data(scene, triangles, geometry_data(scene, triangles));
+    const ThereRef there = there_ref(scene, triangles);
     if (guide) table.lights = guide->lights;
     const bool emissive = table.lights.size() > table.punctual;
     const uint32_t layers = bounces + emissive;
@@ -55,6 +56,7 @@ std::vector<Vpl> vpl_ref(const scenes::Scene& scene, const scenes::Triangles& tr
         };
         if (light.type == light_triangle) {
             const vec2 place = triangle_point(vec2(x));
+            if (!there(light.triangle, double(place.x), double(place.y))) continue;
             SurfaceRef s = surface_ref(scene, triangles, light.triangle, double(place.x), double(place.y));
             const double sides = s.double_sided ? 2 : 1, rest = (double(selection) - before) / share;
             const uvec4 t = triangles.triangles[light.triangle];
@@ -72,7 +74,7 @@ std::vector<Vpl> vpl_ref(const scenes::Scene& scene, const scenes::Triangles& tr
             flux = dvec3(e.flux) / (share * paths * from.density);
         }
         while (++bounce <= bounces) {
-            const HitRef hit = closest_ref(triangles, at + offset * normal, direction, 0, 1e30);
+            const HitRef hit = closest_ref(triangles, at + offset * normal, direction, 0, 1e30, there);
             if (!hit) break;
             const SurfaceRef s = face_towards_ref(surface_ref(scene, triangles, hit.triangle, hit.u, hit.v), direction);
             at = s.position, normal = s.geometric_normal, flux *= s.albedo;

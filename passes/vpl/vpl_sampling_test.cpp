@@ -151,7 +151,7 @@ TEST(VplSampling, spots_follow_their_falloff) {
         TestScene test;
         test.material(vec3(1));
         test.light(scenes::Light::Type::spot, vec3(0), {1, 2, -3}, vec3(1), float(inner), float(outer));
-        const Light light = light_data(test.scene, test.triangles).lights[0];
+        const Light light = light_data(test.scene, test.triangles, geometry_data(test.scene, test.triangles)).lights[0];
         // The solid angle, by Simpson's rule over the cosine from the axis to the rim.
         const int steps = 100000;
         const double rim = double(light.cos_outer);

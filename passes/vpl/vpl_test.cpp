@@ -21,7 +21,7 @@ protected:
     };
     Result run(const TestScene& test, uint32_t max_vpls, uint32_t bounces, uint32_t seed = 1) {
         const UploadedScene scene(device, test);
-        VplPass pass(device, max_vpls);
+        VplPass pass(device, max_vpls, scene.bvh.constants());
         engine::Recorder recorder(device);
         pass.record(recorder, scene.geometry, scene.bvh, scene.lights, bounces, seed);
         recorder.submit_and_wait();
@@ -188,6 +188,50 @@ TEST_F(VplTest, lie_on_surfaces_and_look_at_the_lit_side) {
     }
 }
 
+// Cut-outs let paths through where they are not, and shine where they are; unlit surfaces end paths and send none.
+TEST_F(VplTest, equal_the_twin_where_surfaces_have_holes) {
+    using Alpha = scenes::Material::Alpha;
+    TestScene test;
+    test.material({0.8f, 0.6f, 0.4f});
+    test.textured(random).alpha = Alpha::mask;
+    test.textured(random, scenes::Texture::Wrap::mirror).alpha = Alpha::mask;
+    test.textured(random).unlit = true;
+    test.soup(400, 4, random);
+    test.decorate(random);
+    test.light(Type::point, {0, 1, 0}, {0, 0, -1}, vec3(5));
+    test.light(Type::directional, vec3(0), {1, -2, 0.5f}, vec3(0.3f));
+    for (uint32_t bounces : {0u, 1u, 3u}) {
+        const auto expected = vpl_ref(test.scene, test.triangles, 3000, bounces, 11);
+        EXPECT_GT(expected.size(), 300u);
+        EXPECT_LE(unmatched(expected, run(test, 3000, bounces, 11).vpls, 2e-3), expected.size() / 50) << bounces;
+        TestScene solid = test;
+        for (scenes::Material& m : solid.scene.materials) m.alpha = Alpha::opaque;
+        EXPECT_GT(unmatched(vpl_ref(solid.scene, solid.triangles, 3000, bounces, 11), run(test, 3000, bounces, 11).vpls, 2e-3), expected.size() / 5) << bounces;
+    }
+    for (scenes::Material& m : test.scene.materials) m.unlit = true;
+    test.scene.lights.clear();
+    EXPECT_TRUE(run(test, 100, 2).vpls.empty());
+}
+
+TEST_F(VplTest, blended_panes_take_their_share_of_light) {
+    TestScene test;
+    test.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, test.material(vec3(1)));
+    scenes::Material& m = test.scene.materials[test.material(vec3(1))];
+    m.alpha = scenes::Material::Alpha::blend, m.base_color.a = 0.3f;
+    test.quad({-1, 1, -1}, {0, 0, 2}, {2, 0, 0}, 1);
+    test.light(Type::directional, vec3(0), {0, -1, 0}, vec3(1));
+    double pane = 0, floor = 0;
+    for (const Vpl& v : run(test, 20000, 1).vpls) (v.position.y > 0.5f ? pane : floor) += double(v.flux.x);
+    EXPECT_NEAR(pane, 0.3 * 4, 0.05);
+    EXPECT_NEAR(floor, 0.7 * 4, 0.05);
+    // And one that shines does so for its share of the area.
+    test.scene.lights.clear();
+    test.scene.materials[1].emissive = vec3(1);
+    double sum = 0;
+    for (const Vpl& v : run(test, 20000, 0).vpls) sum += double(v.flux.x);
+    EXPECT_NEAR(sum, 0.3 * 4 * std::numbers::pi, 0.2);
+}
+
 TEST_F(VplTest, equal_the_twin) {
     TestScene closed = box({0.9f, 0.6f, 0.3f});
     closed.quad({0, 1.9f, -1}, {1, 0, 0}, {0, 0, 1}, closed.material(vec3(0.7f), {1, 2, 3}));
@@ -246,7 +290,7 @@ TEST_F(VplTest, a_pass_can_be_recorded_again_with_less) {
     lit.light(Type::point, {0.5f, 0.3f, -0.7f}, {0, 0, -1}, vec3(1));
     black.light(Type::point, {0.5f, 0.3f, -0.7f}, {0, 0, -1}, vec3(1));
     const UploadedScene one(device, lit), two(device, dark), three(device, black);
-    VplPass pass(device, 300);
+    VplPass pass(device, 300, one.bvh.constants());
     engine::Recorder recorder(device);
     const auto count = [&](const UploadedScene& scene, uint32_t bounces) {
         pass.record(recorder, scene.geometry, scene.bvh, scene.lights, bounces, 1);
@@ -259,8 +303,8 @@ TEST_F(VplTest, a_pass_can_be_recorded_again_with_less) {
     EXPECT_EQ(count(one, 0), 0u);    // and nothing that emits by itself
     EXPECT_EQ(count(three, 3), 0u);  // nothing reflects
     EXPECT_EQ(count(one, 1), 300u);
-    EXPECT_THROW(VplPass(device, 2).sure_paths(one.lights, 3), InputError);
-    EXPECT_EQ(VplPass(device, 2).sure_paths(two.lights, 3), 0u);
+    EXPECT_THROW(VplPass(device, 2, one.bvh.constants()).sure_paths(one.lights, 3), InputError);
+    EXPECT_EQ(VplPass(device, 2, one.bvh.constants()).sure_paths(two.lights, 3), 0u);
 }
 
 TEST_F(VplTest, at_any_scale_and_far_away_they_are_finite) {

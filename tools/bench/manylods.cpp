@@ -173,15 +173,16 @@ void bench_manylods(engine::Device& device, const BenchOptions& options, const R
     if (!native_available()) throw DeviceError("this experiment's native rows need a processor with AVX2 and FMA");
 
     // Views: one-bounce VPLs of the scene's lights. Paths that leave the scene make none, so more are shot than are used.
-    const passes::Geometry geometry(device, scene, triangles);
-    const passes::LightTable lights(device, scene, triangles);
-    const compute::WorldTriangles world = passes::world_triangles(triangles);
-    const compute::Bvh bvh(device, world);
+    const passes::GeometryData data = passes::geometry_data(scene, triangles);
+    const passes::Geometry geometry(device, triangles, data);
+    const passes::LightTable lights(device, scene, triangles, data);
+    const compute::WorldTriangles& world = data.world;
+    const compute::Bvh bvh(device, world, compute::BvhQuality::quick, geometry.opacity());
     passes::VplPass vpls(device, most * 4, bvh.constants());
     compute::Bsh tree(device, world, options.log2_samples, options.seed);
     engine::Recorder recorder(device);
     vpls.record(recorder, geometry, bvh, lights, 1, options.seed);
-    tree.refit(recorder, geometry.positions(), geometry.triangles(), geometry.instances());
+    tree.refit(recorder, geometry.positions(), geometry.triangles(), geometry.instances(), geometry.opacity());
     recorder.submit_and_wait();
     const uint alive = engine::download(device, vpls.count())[0];
     if (alive < most) throw InputError("\"" + source + "\" yields " + std::to_string(alive) + " VPLs, fewer than --views " + std::to_string(most));
