@@ -27,12 +27,6 @@ MeshUse measure(const Mesh& mesh) {
     return use;
 }
 
-// Whether a hit is one depends on alpha, which is looked up by triangles as they are in world space.
-bool has_holes(const Scene& scene, const Mesh& mesh) {
-    return std::any_of(mesh.primitives.begin(), mesh.primitives.end(),
-                       [&](const Primitive& p) { return scene.materials[p.material].alpha != Material::Alpha::opaque; });
-}
-
 }  // namespace
 
 double MeshUse::saves() const { return double(bytes) * (double(instances) - 1) - double(bytes_an_instance * instances); }
@@ -75,7 +69,7 @@ SharingPlan plan_sharing(const Scene& scene, Sharing sharing) {
     const bool always = sharing == Sharing::always;
     for (size_t i = 0; i < plan.meshes.size(); ++i) {
         MeshUse& use = plan.meshes[i];
-        use.share = use.instances > 1 && !has_holes(scene, scene.meshes[i]) && (always || (use.triangles >= sharing_least_triangles && use.saves() > 0));
+        use.share = use.instances > 1 && (always || (use.triangles >= sharing_least_triangles && use.saves() > 0));
         if (use.share) saved += use.saves();
     }
     const bool pays = always || (saved >= double(sharing_least_bytes) && saved >= sharing_least_part * all);

@@ -84,6 +84,28 @@ scenes::Scene balls() {
     return scene;
 }
 
+// The same with holes in everything that is shared: balls are cut out by their texture and bent by another, their flat parts blended by
+// vertex colours, their lamps cut out of what shines.
+scenes::Scene holed_balls() {
+    scenes::Scene scene = balls();
+    using Alpha = scenes::Material::Alpha;
+    scenes::Texture& checks = scene.textures[0];
+    for (uint32_t i = 0; i < 64; ++i) checks.rgba[4 * i + 3] = i % 3 ? 255 : 20;
+    scenes::Texture bumps = checks;
+    for (uint32_t i = 0; i < 64; ++i) bumps.rgba[4 * i] = uint8_t(128 + 60 * (int(i % 3) - 1)), bumps.rgba[4 * i + 1] = 128, bumps.rgba[4 * i + 2] = 240;
+    scene.textures.push_back(bumps);
+    scene.materials[1].alpha = Alpha::mask, scene.materials[1].base_color_texture.transform = glm::mat3x2(3, 0, 0.5f, 2, 0.1f, 0);
+    scene.materials[1].normal_texture = {1};
+    scene.materials[2].alpha = Alpha::mask, scene.materials[2].base_color_texture = {0};
+    scene.materials.push_back(scene.materials[0]);
+    scene.materials[3].alpha = Alpha::blend;
+    scenes::Primitive& flat = scene.meshes[0].primitives[1];
+    flat.material = 3;
+    for (const vec3& p : flat.positions) flat.colors.emplace_back(1, 1, 1, 0.5f + 0.5f * p.y);
+    for (const vec3& n : scene.meshes[0].primitives[0].normals) scene.meshes[0].primitives[0].tangents.emplace_back(glm::normalize(glm::cross(n, vec3(0.3f, 1, 0.2f))), 1);
+    return scene;
+}
+
 class FrameInstances : public engine::DeviceTest {
 protected:
     struct Picture {
@@ -111,8 +133,9 @@ protected:
 // Hits, VPLs and samples are the same to the bit. Only interpolated normals are transformed in another precision (float, not double
 // before rounding): they differ by some ulp, and by a step of their packing where that decides; light by as much.
 TEST_F(FrameInstances, images_are_those_of_the_scene_written_out) {
-    for (const Visibility visibility : {Visibility::rays, Visibility::manylods}) {
-        const Picture shared = render(device, balls(), Sharing::always, small(visibility)), flat = render(device, balls(), Sharing::never, small(visibility));
+    for (const auto& [visibility, scene] : {std::pair{Visibility::rays, balls()}, {Visibility::manylods, balls()}, {Visibility::rays, holed_balls()},
+                                            {Visibility::manylods, holed_balls()}}) {
+        const Picture shared = render(device, scene, Sharing::always, small(visibility)), flat = render(device, scene, Sharing::never, small(visibility));
         EXPECT_EQ(shared.size.instances, 25u);
         EXPECT_EQ(shared.size.triangles, flat.size.triangles);
         EXPECT_EQ(shared.size.lights, flat.size.lights);
@@ -131,6 +154,21 @@ TEST_F(FrameInstances, images_are_those_of_the_scene_written_out) {
         EXPECT_GT(mean, 0.05);
         EXPECT_LT(worst, 2e-3 * mean) << "no pixel may be off by more";
     }
+}
+
+// And the holes are there: light falls through them, and the eye sees through them.
+TEST_F(FrameInstances, shared_meshes_have_their_holes) {
+    scenes::Scene holed = holed_balls(), solid = holed_balls();
+    for (scenes::Material& m : solid.materials) m.alpha = scenes::Material::Alpha::opaque;
+    const Picture with = render(device, holed, Sharing::always, small(Visibility::manylods)), without = render(device, solid, Sharing::always, small(Visibility::manylods));
+    EXPECT_EQ(with.size.instances, 25u);
+    size_t farther = 0, nearer = 0;
+    for (size_t i = 0; i < with.positions.size(); ++i) {
+        const float a = with.positions[i].w > 0 ? with.positions[i].w : 1e9f, b = without.positions[i].w > 0 ? without.positions[i].w : 1e9f;
+        farther += a > b, nearer += a < b;
+    }
+    EXPECT_GT(farther, with.positions.size() / 20);
+    EXPECT_EQ(nearer, 0u);
 }
 
 TEST_F(FrameInstances, a_mesh_takes_memory_once) {

@@ -10,6 +10,7 @@
 
 #include "engine/testing.hpp"
 #include "passes/frame.hpp"
+#include "scenes/gltf/write.hpp"
 #include "tests/materials_scene.hpp"
 #include "tools/exr.hpp"
 #include "tools/metrics.hpp"
@@ -173,6 +174,17 @@ TEST_F(Regression, gltf_manylods) {
 
 TEST_F(Regression, materials_manylods) { check("materials_manylods", MaterialsScene::make(), Visibility::manylods); }
 TEST_F(Regression, materials_rays) { check("materials_rays", MaterialsScene::make(), Visibility::rays); }
+
+// Through a file: what the writer and the loader say of materials arrives on the device.
+TEST_F(Regression, materials_of_a_file) {
+    const scenes::Scene made = MaterialsScene::make();
+    const TempFolder folder;
+    tools::put(folder / "materials.glb", scenes::glb_bytes(made));
+    scenes::Scene read = scenes::load(folder / "materials.glb");
+    // glTF has no background, and rounds directions, which sends other paths.
+    read.background = made.background, read.lights = made.lights, read.cameras = made.cameras;
+    EXPECT_EQ(tools::measure(render(made, Visibility::rays), render(read, Visibility::rays), 0).max_abs, 0);
+}
 
 // With cut-outs and panes, maps are as near to rays as elsewhere.
 TEST_F(Regression, maps_know_the_holes) {

@@ -5,7 +5,6 @@
 #include <memory>
 #include <optional>
 
-#include "passes/geometry/unshaded.hpp"
 #include "scenes/scene.hpp"
 #include "tools/commands.hpp"
 #include "tools/exposure.hpp"
@@ -33,7 +32,6 @@ Loaded load(const RenderOptions& options, Progress& progress) {
     scenes::apply_sky(loaded.scene, options.sky);
     loaded.triangles = scenes::flatten(loaded.scene, options.instances);
     loaded.camera = scenes::pick_camera(loaded.scene, loaded.triangles, options.camera);
-    if (const std::string unshaded = passes::unshaded(loaded.scene); !unshaded.empty()) loaded.scene.warnings.push_back(unshaded);
     progress.clear();
     for (const std::string& warning : loaded.scene.warnings) say("warning", warning);
     return loaded;
