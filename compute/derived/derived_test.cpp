@@ -4,6 +4,7 @@
 #include <fstream>
 #include <random>
 
+#include "compute/opacity/opacity_testing.hpp"
 #include "engine/testing.hpp"
 #include "engine/transfer.hpp"
 
@@ -53,6 +54,9 @@ protected:
         return {bsh.empty() ? std::vector<SurfaceSample>() : engine::download(device, bsh.samples()), bsh.area(), bsh.sample_radius(),
                 bvh.nodes(), bvh.triangles(), bvh.dropped(), bvh.bytes(), bvh.depth()};
     }
+    void made_opaque(const OpacityScene& scene, engine::Cache* cache) {
+        EXPECT_FALSE(Derived(scene.world(), cache).bvh(device).asks());
+    }
     fs::path folder;
 };
 
@@ -95,6 +99,42 @@ TEST_F(DerivedTest, whatever_it_is_made_of_and_by_makes_another) {
     Soup elsewhere = shared;
     elsewhere.instances[0].at.x = 5;
     EXPECT_EQ(misses(elsewhere), 2u);
+}
+
+// Cut-outs: what is found asks as what was made did, and another alpha, which moves no triangle, makes another.
+TEST_F(DerivedTest, alpha_is_part_of_it) {
+    std::mt19937 random(5);
+    OpacityScene scene = OpacityScene::soup(500, 0.5f, random);
+    const DeviceOpacity opacity(device, scene);
+    engine::Cache cache(folder);
+    const auto made = [&] {
+        Derived derived(scene.world(), &cache);
+        const Bvh bvh = derived.bvh(device, BvhQuality::quick, opacity.reader());
+        EXPECT_TRUE(bvh.asks());
+        return engine::download(device, derived.bsh(device, 10, 1).samples());
+    };
+    const auto first = made(), found = made();
+    EXPECT_EQ(cache.found(), 2u);
+    EXPECT_EQ(std::memcmp(first.data(), found.data(), first.size() * sizeof(SurfaceSample)), 0);
+    const OpacityScene was = scene;
+    uint64_t missing = cache.missing();
+    const auto changed = [&](const char* what) {
+        made();
+        EXPECT_EQ(cache.missing(), missing += 2) << what;
+        scene = was;
+    };
+    scene.materials[3].cutoff = 0.4f, changed("cutoff");
+    scene.texels[7] ^= 1u << 24, changed("texel");
+    scene.colors[5].a *= 0.5f, changed("colour");
+    scene.texcoords[8].x += 0.1f, changed("first set");
+    scene.texcoords1[8].x += 0.1f, changed("second set");
+
+    for (OpacityMaterial& m : scene.materials) m.cutoff = 0;  // opaque: nothing of it matters
+    made_opaque(scene, &cache);
+    missing = cache.missing();
+    scene.texels[7] ^= 1u << 24;
+    made_opaque(scene, &cache);
+    EXPECT_EQ(cache.missing(), missing);
 }
 
 TEST_F(DerivedTest, damaged_entries_are_made_anew) {
