@@ -297,6 +297,8 @@ TEST_F(Import, PlyThatIsNone) {
     EXPECT_NE(refuse(ply_head + ply_faces + rows + "3 0 1 0.5\n").find("corner 0.5"), std::string::npos);
     EXPECT_NE(refuse(ply_head + ply_faces + rows + "300 0 1 2\n").find("announced"), std::string::npos);
     for (const char* count : {"1e20", "1e120", "inf", "-1", "2.5", "nan"}) EXPECT_NE(refuse(ply_head + ply_faces + rows + count + " 0 1 2\n").find("a list has"), std::string::npos);
+    const std::string xyz = "property float x\nproperty float y\nproperty float z\n";
+    EXPECT_NE(refuse("ply\nformat ascii 1.0\nelement vertex 1\n" + xyz + "element vertex 1\n" + xyz + "property float u\nproperty float v\nend_header\n0 0 0\n0 0 0 1 1\n").find("vertices twice"), std::string::npos);
     EXPECT_NE(refuse(ply_head + ply_faces + rows + "3 0 1\n").find("end too early"), std::string::npos);
     EXPECT_NE(refuse(ply_head + ply_faces + "0 0 zero\n").find("\"zero\" is not a number"), std::string::npos);
     const Scene odd = read("o.ply", ply_head + ply_faces + "0 0 0\n+1 0 0\n1e0 1 nan\n0 1. 0\n4 0 1 2 3\n");

@@ -218,6 +218,7 @@ private:
 
     void vertices(const Element& element) {
         if (element.count >= none) file_.fail("it has more than 2^32 vertices", "cut it up");
+        if (!mesh_.positions.empty()) file_.fail("it has vertices twice");  // with other attributes, perhaps
         std::array<double, 12> row{};
         std::vector<std::pair<uint32_t, double>> columns;  // of each property, and what its values are multiplied by
         std::array<bool, 12> has{};
