@@ -152,7 +152,8 @@ void cut(const Piece& piece, Share share, double sample_area, std::vector<Share>
         return;
     }
     const auto halves = piece.halves();
-    for (uint32_t i = 0; i < 2; ++i) cut(halves[i], {0, 0.5 * share.area, share.triangle, 2 * share.path + i, share.asks}, sample_area, shares, centers);
+    for (uint32_t i = 0; i < 2; ++i)
+        cut(halves[i], {0, 0.5 * share.area, share.triangle, 2 * share.path + i, share.asks}, sample_area, shares, centers);
 }
 
 // ---- Triangles that are there in part (compute/opacity) ----
@@ -225,7 +226,8 @@ std::vector<Share> ordered_shares(const WorldTriangles& world, std::span<const d
         Cuts& here = cuts[begin / grain];
         here.shares.reserve(end - begin), here.centers.reserve(end - begin);
         world.for_each(uint32_t(begin), uint32_t(end), [&](uint32_t t, uint32_t stored, const Corners& corners) {
-            if (areas[t] > 0) cut(whole(corners), {0, areas[t], t, 1, world.opacity.kind(stored) == Opacity::Kind::asks}, sample_area, here.shares, here.centers);
+            const bool asks = world.opacity.kind(stored) == Opacity::Kind::asks;
+            if (areas[t] > 0) cut(whole(corners), {0, areas[t], t, 1, asks}, sample_area, here.shares, here.centers);
         });
         if (!world.opacity.everywhere()) here.keep_what_is_there(world, sample_area, seed);
         for (const dvec3& c : here.centers) here.low = glm::min(here.low, c), here.high = glm::max(here.high, c);
