@@ -104,7 +104,7 @@ protected:
 
 TEST_F(faults, host_memory) {
     const std::string part = "memory";
-    for (const auto& [arguments, most] : {std::pair(compare, 40L), {convert, 40L}, {render, 8L}}) {
+    for (const auto& [arguments, most] : {std::pair(compare, 40L), {convert, 40L}, {render, 5L}}) {
         const long count = counts(arguments)["new"];
         EXPECT_GT(count, 20);
         const auto whole = names_and_bytes();
@@ -153,7 +153,7 @@ TEST_F(faults, device_memory) {
     for (const std::string& name : folder.names()) put(folder / name, "old");
     for (const char* call : {"vkAllocateMemory", "vkCreateBuffer"}) {
         EXPECT_GT(made.at(call), 10);
-        for (const long n : spread(made.at(call), 3))
+        for (const long n : spread(made.at(call), 2))
             for (const char* result : {"-2", "-1"})  // VK_ERROR_OUT_OF_DEVICE_MEMORY, VK_ERROR_OUT_OF_HOST_MEMORY
                 if (result[1] == '2' || n % 3 == 0) refuse(3, render, std::string(call) + ":" + std::to_string(n) + ":" + result, "out of memory");
     }
@@ -167,7 +167,7 @@ TEST_F(faults, device_lost) {
     for (const std::string& name : folder.names()) put(folder / name, "old");
     for (const char* call : {"vkQueueSubmit2", "vkWaitForFences"}) {
         EXPECT_GT(made.at(call), 3);
-        for (const long n : spread(made.at(call), 3)) refuse(3, render, std::string(call) + ":" + std::to_string(n) + ":-4", "the device was lost");
+        for (const long n : spread(made.at(call), 2)) refuse(3, render, std::string(call) + ":" + std::to_string(n) + ":-4", "the device was lost");
     }
     refuse(3, render, "vkCreateComputePipelines:3:-3", "VkResult -3");
 }
@@ -284,7 +284,7 @@ TEST_F(faults, ended_at_random_moments) {
     const auto whole = names_and_bytes();
     const auto span = std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - start_time).count();
     std::mt19937 random(5);
-    for (int i = 0; i < 8; ++i) {
+    for (int i = 0; i < 6; ++i) {
         const int sent = i % 2 ? SIGKILL : SIGINT;
         for (const auto& [name, bytes] : whole) put(folder / name, "old");
         const TempFolder pipes;
