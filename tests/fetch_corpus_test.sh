@@ -188,6 +188,14 @@ while IFS='|' read -r name packages from _; do
   from=${from// /}
   expect "what $name is made from" test "$from" = - -o -s "$source/tools/corpus/$from" -o -n "$(sed 's|//|/|' "$source/tools/corpus/files.sha256" | grep -F "  $from")"
 done < <(grep -v '^#' "$source/tools/corpus/items")
+while IFS=: read -r recipe file; do
+  expect "a file of ${recipe##*/}" grep -qF "  $file" <(sed 's|//|/|' "$source/tools/corpus/files.sha256")
+done < <(grep -oE '"(file|texture)": "[^"]+"' "$source"/tools/corpus/*.json | sed -E 's/"(file|texture)": "(.*)"/\2/' | grep -v ':builtin:')
+for recipe in "$source"/tools/corpus/*.json; do expect "a row of items" grep -qE "\| ${recipe##*/} " "$source/tools/corpus/items"; done
+while IFS='|' read -r _ scene _; do
+  scene=${scene// /}
+  [[ $scene == builtin:* ]] || expect "an item of the gallery" grep -q "^${scene%.glb} " "$source/tools/corpus/items"
+done < <(grep -v '^#' "$source/tools/corpus/gallery")
 
 [[ $failures -eq 0 ]] && echo "all as expected"
 exit "$failures"
