@@ -300,10 +300,13 @@ Device::Device(const DeviceOptions& options) : callbacks_(std::make_unique<Callb
 }
 
 Device::~Device() {
-    for (auto& [key, pipeline] : pipelines_) {
-        vkDestroyPipeline(device_, pipeline.pipeline, nullptr);
-        vkDestroyPipelineLayout(device_, pipeline.layout, nullptr);
-    }
+    for (auto& [key, making] : pipelines_) try {
+            if (making.wait_for(std::chrono::seconds(0)) == std::future_status::deferred) continue;  // nobody has asked for it
+            const Pipeline& pipeline = making.get();
+            vkDestroyPipeline(device_, pipeline.pipeline, nullptr);
+            vkDestroyPipelineLayout(device_, pipeline.layout, nullptr);
+        } catch (const std::exception&) {  // it was never made, and whoever used it has heard so
+        }
     if (device_) vkDestroyDevice(device_, nullptr);
     if (messenger_) {
         auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <future>
 #include <map>
 #include <memory>
 #include <string>
@@ -83,8 +84,8 @@ public:
     uint32_t validation_messages() const;
     bool validation_active() const { return validation_active_; }
 
-    // The pipelines made so far, by name and constants; they live as long as the device.
-    std::map<std::string, Pipeline>& pipelines() { return pipelines_; }
+    // The pipelines asked for so far, by name and constants, made or in the making; they live as long as the device.
+    std::map<std::string, std::shared_future<Pipeline>>& pipelines() { return pipelines_; }
 
 private:
     struct Callbacks;
@@ -101,7 +102,7 @@ private:
     double timestamp_period_ns_ = 0;
     uint64_t memory_limit_ = 0, memory_now_ = 0;
     std::map<std::string, MemoryUse> memory_;
-    std::map<std::string, Pipeline> pipelines_;
+    std::map<std::string, std::shared_future<Pipeline>> pipelines_;
 };
 
 // Throws DeviceError "WHAT failed (VK_…)", or OutOfMemory, when a Vulkan call did not succeed.

@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <exception>
 #include <mutex>
-#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -40,8 +39,8 @@ void parallel_pieces(size_t count, size_t piece, const std::function<void(size_t
     const size_t useful = std::min<size_t>(threads ? threads : host_threads(), pieces);
     for (size_t i = 1; i < useful; ++i) try {
             others.emplace_back(take);
-        } catch (const std::system_error&) {
-            break;  // no more threads to be had: fewer do the same
+        } catch (const std::exception&) {
+            break;  // no more threads to be had, or no memory for one: fewer do the same
         }
     take();
     for (std::thread& other : others) other.join();

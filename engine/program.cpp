@@ -6,10 +6,13 @@
 #include <cstdlib>
 #include <memory>
 #include <new>
+#include <semaphore>
 #include <utility>
 #include <vector>
 
 #include <spirv_cross/spirv_cross_c.h>
+
+#include "engine/parallel.hpp"
 
 namespace myriad::engine {
 namespace {
@@ -101,6 +104,19 @@ Pipeline make_pipeline(Device& device, const KernelTable& table, const std::stri
     return out;
 }
 
+// Starts to make it on a thread of its own; where there is no thread to be had, whoever waits for it makes it.
+template <class Make>
+std::shared_future<Pipeline> make_beside(Make make) {
+    static std::counting_semaphore<> cores(host_threads());
+    return std::async(std::launch::async | std::launch::deferred, [make] {
+               cores.acquire();
+               struct Release {
+                   ~Release() { cores.release(); }
+               } release;
+               return make();
+           }).share();
+}
+
 }  // namespace
 
 Program::Program(Device& device, const KernelTable& table, const std::string& name, Constants constants) {
@@ -108,8 +124,8 @@ Program::Program(Device& device, const KernelTable& table, const std::string& na
     for (auto [id, value] : constants) key += "|" + std::to_string(id) + "=" + std::to_string(value);
     auto found = device.pipelines().find(key);
     if (found == device.pipelines().end())
-        found = device.pipelines().emplace(key, make_pipeline(device, table, name, std::move(constants))).first;
-    pipeline_ = &found->second;
+        found = device.pipelines().emplace(key, make_beside([=, &device, &table] { return make_pipeline(device, table, name, constants); })).first;
+    pipeline_ = found->second;
 }
 
 }  // namespace myriad::engine

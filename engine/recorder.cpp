@@ -152,7 +152,8 @@ double Recorder::warm_up() {
     fill(nothing, 0);
     use(nothing, false);
     synchronise();
-    for (const auto& [key, pipeline] : device_.pipelines()) {
+    for (const auto& [key, made] : device_.pipelines()) {
+        const Pipeline& pipeline = made.get();
         vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.pipeline);
         if (pipeline.push_constant_bytes)
             vkCmdPushConstants(commands_, pipeline.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, (pipeline.push_constant_bytes + 3) & ~3u, zeros.data());

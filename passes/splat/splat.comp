@@ -35,7 +35,7 @@ void draw(View view, Sphere sphere, uint cone, uvec2 box, uint map) {
 
 void main() {
     const uint index = thread_index() / threads_per_group;
-    if (index >= min(push.count.at[0], push.capacity)) return;
+    if (index >= min(push.count.at[0], push.capacity) || push.failed.at[0] != 0u) return;
     const CutGroup g = cut_unpack(push.groups.at[index]);
     uint drawn = g.drawn;
     if (threads_per_group != 1u) drawn &= 1u << (thread_index() % threads_per_group);

@@ -22,6 +22,7 @@ void SplatPass::record(engine::Recorder& recorder, const SplatInputs& in, const 
     grid_.dispatch(recorder, splat_, in.cut.state(), compute::AppendLists::kept_word, in.cut.kept_capacity(), threads_per_group_, [&] {
         return SplatPush{.groups = recorder.read(in.cut.kept()),
                          .count = recorder.read(in.cut.state(), compute::AppendLists::kept_word),
+                         .failed = recorder.read(in.cut.state(), compute::AppendLists::failed_word),
                          .tree = in.tree.read(recorder),
                          .views = recorder.read(in.views),
                          .atlas = recorder.write(atlas),

@@ -21,6 +21,7 @@ const float splat_edge_on = 1.0f / 256.0f;
 struct SplatPush {
     Uint2s groups;
     Uints count;
+    Uints failed;            // failed.at[0] != 0: groups are missing, all of this will be done again, and nothing is drawn
     BshRef tree;
     Views views;
     Uints atlas;

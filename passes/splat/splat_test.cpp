@@ -75,6 +75,7 @@ protected:
         uint32_t first = 0, maps = 0;       // maps 0: of all views
         uint64_t capacity = 0, claimed = 0; // of the list, and how many groups its counter claims; 0: as many as there are
         uint32_t threads_per_group = 0;     // 0: what SplatPass chooses for the device
+        uint32_t failed = 0;                // the lists' word of that name
     };
     // What the kernel makes of these groups; they need not come from a cut.
     std::vector<uint> splat(const Tree& tree, const std::vector<uvec2>& groups, const std::vector<View>& views, uint map_size, Options o) {
@@ -83,6 +84,7 @@ protected:
         engine::upload_bytes(device, groups.data(), lists.kept(), std::min<uint64_t>(groups.size(), lists.kept_capacity()) * sizeof(uvec2));
         std::vector<uint> state(lists.state().count());
         state[AppendLists::kept_word] = uint(o.claimed ? o.claimed : groups.size());
+        state[AppendLists::failed_word] = o.failed;
         engine::upload_bytes(device, state.data(), lists.state(), state.size() * sizeof(uint));
         const auto on = on_device(views);
         engine::Array<uint> atlas(device, "test", "atlas", o.maps * map_texels(map_size));
@@ -95,7 +97,8 @@ protected:
             recorder.fill(atlas, atlas_nothing);
             const engine::Program program(device, engine::passes_kernels, "splat/splat", {{2, o.threads_per_group}});
             grid.dispatch(recorder, program, lists.state(), AppendLists::kept_word, lists.kept_capacity(), o.threads_per_group, [&] {
-                return SplatPush{recorder.read(lists.kept()), recorder.read(lists.state(), AppendLists::kept_word), tree.bsh.read(recorder),
+                return SplatPush{recorder.read(lists.kept()), recorder.read(lists.state(), AppendLists::kept_word),
+                                 recorder.read(lists.state(), AppendLists::failed_word), tree.bsh.read(recorder),
                                  recorder.read(on), recorder.write(atlas), uint(lists.kept_capacity()), map_size, o.first};
             });
         }
@@ -234,6 +237,18 @@ TEST_F(SplatTest, counts_beyond_the_capacity_are_clamped) {
         for (uint32_t threads : {1u, 8u})
             EXPECT_TRUE(same(expected, splat(tree, groups, views, 16, {.capacity = capacity, .claimed = 1u << 30, .threads_per_group = threads})));
     }
+}
+
+// What is drawn of lists that lost groups would be thrown away: the batch is done again.
+TEST_F(SplatTest, lists_that_overflowed_draw_nothing) {
+    const Tree tree = random_tree(8);
+    const auto views = random_views(2, 2);
+    const auto groups = cut(tree, views, 1, 16);
+    const std::vector<uint> nothing(2 * map_texels(16), atlas_nothing);
+    EXPECT_FALSE(same(nothing, splat(tree, groups, views, 16, {})));
+    for (const uint32_t failed : {append_next_overflow, append_kept_overflow})
+        for (const uint32_t threads : {0, 8})
+            EXPECT_TRUE(same(nothing, splat(tree, groups, views, 16, {.threads_per_group = threads, .failed = failed})));
 }
 
 TEST_F(SplatTest, nothing_to_draw_leaves_nothing) {
