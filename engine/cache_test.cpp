@@ -9,9 +9,10 @@
 #include <fstream>
 #include <iterator>
 #include <numeric>
-#include <thread>
 
 #include <gtest/gtest.h>
+
+#include "engine/temp_folder.hpp"
 
 namespace myriad::engine {
 namespace {
@@ -20,12 +21,6 @@ namespace fs = std::filesystem;
 
 class CacheTest : public testing::Test {
 protected:
-    CacheTest() {
-        std::string name = (fs::temp_directory_path() / "myriad-cache-XXXXXX").string();
-        folder = mkdtemp(name.data());
-    }
-    ~CacheTest() override { fs::remove_all(folder); }
-
     static std::vector<uint32_t> numbers(size_t count, uint32_t from) {
         std::vector<uint32_t> values(count);
         std::iota(values.begin(), values.end(), from);
@@ -54,7 +49,8 @@ protected:
     }
     static void write(const fs::path& path, const std::string& bytes) { std::ofstream(path, std::ios::binary) << bytes; }
 
-    fs::path folder;
+    const TempFolder temporary;
+    const fs::path& folder = temporary.path;
 };
 
 TEST_F(CacheTest, gives_back_what_was_stored) {

@@ -8,9 +8,27 @@
 #include <string>
 #include <tuple>
 
+#include <gtest/gtest.h>
+
 #include "scenes/scene.hpp"
 
 namespace myriad::scenes {
+
+// A fixture whose scene, Self::source, is loaded once for all its tests.
+template <class Self>
+class BuiltinTest : public testing::Test {
+protected:
+    static void SetUpTestSuite() {
+        scene = new Scene(load(Self::source));
+        triangles = new Triangles(flatten(*scene, Sharing::never));
+    }
+    static void TearDownTestSuite() {
+        delete scene;
+        delete triangles;
+    }
+    static inline Scene* scene = nullptr;
+    static inline Triangles* triangles = nullptr;
+};
 
 // FNV-1a over everything that is rendered.
 inline uint64_t hash(Scene& scene) {

@@ -15,21 +15,9 @@ namespace {
 
 using glm::vec3;
 
-class Atrium : public testing::Test {
-protected:
-    static void SetUpTestSuite() {
-        scene = new Scene(load("builtin:atrium"));
-        triangles = new Triangles(flatten(*scene, Sharing::never));
-    }
-    static void TearDownTestSuite() {
-        delete scene;
-        delete triangles;
-    }
-    static Scene* scene;
-    static Triangles* triangles;
+struct Atrium : BuiltinTest<Atrium> {
+    static constexpr const char* source = "builtin:atrium";
 };
-Scene* Atrium::scene = nullptr;
-Triangles* Atrium::triangles = nullptr;
 
 TEST(Kit, RandomIsFixed) {
     kit::Random a(1), b(1), c(2);

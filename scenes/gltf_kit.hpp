@@ -16,6 +16,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/error.hpp"
+#include "scenes/refusal.hpp"
 #include "scenes/scene.hpp"
 
 namespace myriad::scenes {
@@ -111,19 +112,7 @@ protected:
         return scene;
     }
 
-    // The message that refuses the file; it must name the file and be one line.
-    std::string refused(const std::string& path) {
-        try {
-            load(path);
-        } catch (const InputError& e) {
-            const std::string message = e.what();
-            EXPECT_EQ(message.find(path), 0u) << message;
-            EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-            EXPECT_EQ(message.back(), '.') << message;
-            return message;
-        }
-        return "(accepted)";
-    }
+    std::string refused(const std::string& path) { return refusal(path, [&] { load(path); }); }
     void expect_refused(std::initializer_list<const char*> words) {
         const std::string message = refused(write());
         for (const char* word : words) EXPECT_NE(message.find(word), std::string::npos) << message << "\n  lacks: " << word;

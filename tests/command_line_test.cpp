@@ -42,7 +42,7 @@ TEST_F(command_line, help_names_every_option) {
         {"render", {"SCENE",     "--output",   "--png",  "--size",    "--camera",  "--seed",    "--visibility", "--append",
                     "--vpls",    "--bounces",  "--map-size",          "--epsilon", "--samples", "--gather",     "--filter",
                     "--vpl-bound", "--bias",   "--exposure",          "--memory-limit",         "--stats",      "--trace",
-                    "--aov",     "--device",   "--repeat", "--float", "--quiet",   "1:1",       "builtin:cornell", "W/sr"}},
+                    "--aov",     "--cache",  "--instances",         "--sky",     "--device",   "--repeat", "--float", "--quiet",   "1:1",       "builtin:cornell", "W/sr"}},
         {"compare", {"REF", "TEST", "--json", "--fail-above", "--fail-below", "--layer", "--diff", "--tolerance"}},
         {"bench", {"--json"}},
         {"convert", {"IN", "OUT", "--unit", "--up", "--crease", "--colors", "--seed", "--quiet", ".gltf", ".glb", ".obj", ".ply.gz", ".stl", ".fbx", ".dae", ".json", "builtin:NAME"}},
@@ -335,6 +335,29 @@ TEST_F(command_line, progress_is_for_terminals) {
     EXPECT_TRUE(contains(shown, "\r\033[K") && contains(shown, "gathering")) << shown;
     EXPECT_TRUE(shown.ends_with("\r\033[K")) << "the line must be cleared";
     EXPECT_FALSE(contains(bytes_of(pipes / "out"), "\r"));
+}
+
+TEST_F(command_line, the_cache_is_used_and_its_loss_is_no_failure) {
+    const auto with = [&](const std::string& cache) -> Arguments {
+        return {"render", "builtin:cornell", "-o", folder / "c.exr", "--size", "16x9", "--vpls", "16", "--samples", "8", "--stats", folder / "c.json", "--cache", cache};
+    };
+    const auto stats = [&] { return bytes_of(folder / "c.json"); };
+    succeed(with(folder / "made"));
+    EXPECT_TRUE(contains(stats(), "\"missing\": 2"));
+    const std::string image = bytes_of(folder / "c.exr");
+    succeed(with(folder / "made"));
+    EXPECT_TRUE(contains(stats(), "\"found\": 2"));
+    EXPECT_EQ(bytes_of(folder / "c.exr"), image);
+    succeed(with("off"));
+    EXPECT_FALSE(contains(stats(), "\"cache\""));
+
+    put(folder / "file", "x");
+    const Outcome lost = myriad_program(with(folder / "file" / "in\x1bit"));
+    EXPECT_EQ(lost.status, 0);
+    EXPECT_TRUE(lost.err.starts_with("warning: nothing is kept in the cache '")) << lost.err;
+    EXPECT_EQ(lost.error_lines(), 1);
+    EXPECT_FALSE(contains(lost.err, "\x1b")) << "control characters could drive a terminal";
+    EXPECT_EQ(bytes_of(folder / "c.exr"), image);
 }
 
 TEST_F(command_line, a_full_disk_for_the_table_is_no_success) {

@@ -98,7 +98,7 @@ void render(const RenderOptions& options) {
     const auto frame = run.phase("build", [&] { return std::make_unique<passes::Frame>(*device, loaded.scene, loaded.triangles, settings); });
     run.build = frame->build_steps();
     if (cache) run.cache = CacheUse{cache->found(), cache->missing(), cache->damaged()};
-    if (cache && !cache->problem().empty()) progress.clear(), std::fprintf(stderr, "warning: %s.\n", cache->problem().c_str());
+    if (cache && !cache->problem().empty()) progress.clear(), say("warning", cache->problem());
     run.size = frame->size();
     run.settings = settings_json(settings, frame->vpl_bound());
     run.settings["sky"] = choice_name(sky_choices(), options.sky);

@@ -1,7 +1,5 @@
-// For tests: a folder of its own, removed at the end.
+// For tests: files in a folder of their own, and how they are refused.
 #pragma once
-
-#include <stdlib.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -13,28 +11,11 @@
 #include <gtest/gtest.h>
 
 #include "engine/error.hpp"
+#include "engine/temp_folder.hpp"
 
 namespace myriad::tools {
 
-struct TempFolder {
-    TempFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "myriad-XXXXXX").string();
-        path = mkdtemp(name.data());
-    }
-    ~TempFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path, ignored);
-    }
-    std::filesystem::path operator/(const std::string& name) const { return path / name; }
-
-    std::vector<std::string> names() const {  // sorted; hidden ones too
-        std::vector<std::string> names;
-        for (const auto& entry : std::filesystem::directory_iterator(path)) names.push_back(entry.path().filename());
-        std::sort(names.begin(), names.end());
-        return names;
-    }
-    std::filesystem::path path;
-};
+using engine::TempFolder;
 
 inline std::string bytes_of(const std::filesystem::path& path) {
     std::ifstream in(path, std::ios::binary);

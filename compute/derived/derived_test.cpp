@@ -5,6 +5,7 @@
 #include <random>
 
 #include "compute/opacity/opacity_testing.hpp"
+#include "engine/temp_folder.hpp"
 #include "engine/testing.hpp"
 #include "engine/transfer.hpp"
 
@@ -28,12 +29,6 @@ struct Soup {
 
 class DerivedTest : public engine::DeviceTest {
 protected:
-    DerivedTest() {
-        std::string name = (fs::temp_directory_path() / "myriad-derived-XXXXXX").string();
-        folder = mkdtemp(name.data());
-    }
-    ~DerivedTest() override { fs::remove_all(folder); }
-
     // Bounds say all about the tree of rays and of samples, and where leaves are.
     struct Made {
         std::vector<SurfaceSample> samples;
@@ -57,7 +52,8 @@ protected:
     void made_opaque(const OpacityScene& scene, engine::Cache* cache) {
         EXPECT_FALSE(Derived(scene.world(), cache).bvh(device).asks());
     }
-    fs::path folder;
+    const engine::TempFolder temporary;
+    const fs::path& folder = temporary.path;
 };
 
 TEST_F(DerivedTest, is_the_same_made_stored_and_found) {

@@ -20,6 +20,8 @@ using glm::mat4;
 using glm::vec2;
 using glm::vec3;
 using kit::Profile;
+using kit::moved;
+using kit::turned;
 
 constexpr vec2 half{12, 4.5f};          // the rectangle of column axes
 constexpr float depth = 3.2f;           // of the galleries, from the axes to the back wall
@@ -31,9 +33,6 @@ constexpr float below = -0.3f;          // foundations
 // The sun's way, and the sky: see sky().
 const vec3 sun_direction = glm::normalize(vec3(0.80f, -1.0f, -0.55f));
 constexpr vec3 sun_irradiance{13.0f, 11.4f, 8.8f}, sky_radiance{0.75f, 1.10f, 1.60f};
-
-mat4 moved(vec3 by) { return glm::translate(mat4(1), by); }
-mat4 turned(float degrees) { return glm::rotate(mat4(1), glm::radians(degrees), vec3(0, 1, 0)); }
 
 // One side of the court: x runs along it, z into the court, the origin lies amid its column axes.
 struct Side {

@@ -14,9 +14,8 @@ using glm::vec3;
 using kit::arc;
 using kit::pi;
 using kit::Profile;
-
-mat4 moved(vec3 by) { return glm::translate(mat4(1), by); }
-mat4 turned(float degrees, vec3 axis) { return glm::rotate(mat4(1), glm::radians(degrees), axis); }
+using kit::moved;
+using kit::turned;
 
 // Attic base and bell capital around a shaft from radius r0 at y0 to r1 at y1; the shaft itself is added by the caller.
 void base_and_capital(Primitive& out, float r0, float r1, float height, float abacus, float detail) {

@@ -24,14 +24,14 @@ using glm::mat4;
 using glm::vec2;
 using glm::vec3;
 using kit::pi;
+using kit::moved;
+using kit::turned;
 
 // The way the sun's light travels: from the south, a little from the east, well down.
 const vec3 sun_direction = glm::normalize(vec3(-0.26f, -0.92f, -0.95f));
 constexpr float sun_distance = 30, sun_irradiance = 6, sun_cone = 3.3f;  // metres, W/m^2, metres around the window's middle
 constexpr float glass_radiance = 1.3f, sunny_glass_radiance = 1.7f;
 
-mat4 moved(vec3 by) { return glm::translate(mat4(1), by); }
-mat4 turned(float degrees) { return glm::rotate(mat4(1), glm::radians(degrees), vec3(0, 1, 0)); }
 float middle(int bay_number) { return (float(bay_number) + 0.5f) * bay; }
 
 class Cathedral {
@@ -114,15 +114,7 @@ private:
         for (vec2& uv : piece.wall.texcoords) uv *= 0.25f;  // the textures are four metres wide
         return mesh(name, {{walls, std::move(piece.wall)}, {plain_, std::move(piece.plain)}, {dark_, std::move(piece.dark)}, {gilt_, std::move(piece.gilt)}});
     }
-    uint32_t mesh(const char* name, std::vector<std::pair<uint32_t, Primitive>> parts) {
-        std::vector<Primitive> primitives;
-        for (auto& [material, primitive] : parts) {
-            if (primitive.indices.empty()) continue;
-            primitive.material = material;
-            primitives.push_back(std::move(primitive));
-        }
-        return kit::add_mesh(scene_, name, std::move(primitives));
-    }
+    uint32_t mesh(const char* name, std::vector<std::pair<uint32_t, Primitive>> parts) { return kit::add_mesh(scene_, name, std::move(parts)); }
     void place(uint32_t mesh, const mat4& at) { kit::add_instance(scene_, mesh, at); }
 
     void floors() {

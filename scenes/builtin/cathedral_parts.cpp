@@ -14,9 +14,8 @@ using glm::vec3;
 using kit::arc;
 using kit::pi;
 using kit::Profile;
-
-mat4 moved(vec3 by) { return glm::translate(mat4(1), by); }
-mat4 turned(float degrees) { return glm::rotate(mat4(1), glm::radians(degrees), vec3(0, 1, 0)); }
+using kit::moved;
+using kit::turned;
 
 // A round shaft about (x, z) = axis from y0 to y1, with an attic base and a bell capital of height `cap` (0: without). Only
 // the part that stands out around the direction `facing` is made, `spread` to both sides of it.

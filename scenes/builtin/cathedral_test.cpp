@@ -12,22 +12,10 @@ namespace {
 
 using glm::vec3;
 
-class Cathedral : public testing::Test {
-protected:
-    static void SetUpTestSuite() {
-        scene = new Scene(load("builtin:cathedral?detail=0.5"));
-        triangles = new Triangles(flatten(*scene, Sharing::never));
-    }
-    static void TearDownTestSuite() {
-        delete scene;
-        delete triangles;
-    }
+struct Cathedral : BuiltinTest<Cathedral> {
+    static constexpr const char* source = "builtin:cathedral?detail=0.5";
     static bool emits(size_t triangle) { return scene->materials[triangles->triangles[triangle].w].emissive != vec3(0); }
-    static Scene* scene;
-    static Triangles* triangles;
 };
-Scene* Cathedral::scene = nullptr;
-Triangles* Cathedral::triangles = nullptr;
 
 TEST_F(Cathedral, DetailScalesIt) {
     Scene whole = load("builtin:cathedral"), coarse = load("builtin:cathedral?detail=0.25");

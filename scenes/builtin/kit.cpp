@@ -243,6 +243,19 @@ uint32_t add_mesh(Scene& scene, const std::string& name, std::vector<Primitive> 
     return uint32_t(scene.meshes.size() - 1);
 }
 
+uint32_t add_mesh(Scene& scene, const std::string& name, std::vector<std::pair<uint32_t, Primitive>> parts) {
+    std::vector<Primitive> primitives;
+    for (auto& [material, primitive] : parts) {
+        if (primitive.indices.empty()) continue;
+        primitive.material = material;
+        primitives.push_back(std::move(primitive));
+    }
+    return add_mesh(scene, name, std::move(primitives));
+}
+
+glm::mat4 moved(vec3 by) { return glm::translate(glm::mat4(1), by); }
+glm::mat4 turned(float degrees, vec3 axis) { return glm::rotate(glm::mat4(1), glm::radians(degrees), axis); }
+
 void add_instance(Scene& scene, uint32_t mesh, const glm::mat4& to_world) { scene.instances.push_back({mesh, to_world}); }
 
 void add_camera(Scene& scene, const std::string& name, vec3 eye, vec3 target, float yfov_degrees) {

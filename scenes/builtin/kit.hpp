@@ -93,9 +93,15 @@ void drape(Primitive& cloth, const Drape& shape, Random& random, float detail);
 
 void append(Primitive& out, const Primitive& in, const glm::mat4& transform);
 
+// Transforms: a translation; a rotation about an axis.
+glm::mat4 moved(glm::vec3 by);
+glm::mat4 turned(float degrees, glm::vec3 axis = {0, 1, 0});
+
 // Puts a scene together.
 uint32_t add_material(Scene& scene, const std::string& name, glm::vec3 albedo, float roughness = 0.9f, uint32_t texture = none);
 uint32_t add_mesh(Scene& scene, const std::string& name, std::vector<Primitive> primitives);
+// Of parts by material; empty ones are left out.
+uint32_t add_mesh(Scene& scene, const std::string& name, std::vector<std::pair<uint32_t, Primitive>> parts);
 void add_instance(Scene& scene, uint32_t mesh, const glm::mat4& to_world = glm::mat4(1));
 void add_camera(Scene& scene, const std::string& name, glm::vec3 eye, glm::vec3 target, float yfov_degrees);
 

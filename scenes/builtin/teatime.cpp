@@ -18,6 +18,8 @@ using glm::mat4;
 using glm::vec2;
 using glm::vec3;
 using kit::pi;
+using kit::moved;
+using kit::turned;
 
 // The room: x from the window wall to the right, z from the picture wall towards the camera.
 constexpr float left = -1.95f, right = 2.6f, back = -1.85f, front = 3.0f, ceiling = 2.75f, wall = 0.30f;
@@ -29,9 +31,6 @@ constexpr std::array<float, 2> windows = {-0.55f, 1.45f};  // z of their axes
 const vec3 sun_direction = glm::normalize(vec3(0.82f, -0.42f, 0.20f));
 constexpr vec3 sun_irradiance{5.6f, 4.5f, 3.1f};
 constexpr float garden_radiance = 2.0f;
-
-mat4 moved(vec3 by) { return glm::translate(mat4(1), by); }
-mat4 turned(float degrees) { return glm::rotate(mat4(1), glm::radians(degrees), vec3(0, 1, 0)); }
 
 class Teatime {
 public:
@@ -95,15 +94,7 @@ private:
         carpet_ = textured(carpet(seed_ + 8), 0.9f);
     }
 
-    uint32_t mesh(const char* name, std::vector<std::pair<uint32_t, Primitive>> parts) {
-        std::vector<Primitive> primitives;
-        for (auto& [material, primitive] : parts) {
-            if (primitive.indices.empty()) continue;
-            primitive.material = material;
-            primitives.push_back(std::move(primitive));
-        }
-        return kit::add_mesh(scene_, name, std::move(primitives));
-    }
+    uint32_t mesh(const char* name, std::vector<std::pair<uint32_t, Primitive>> parts) { return kit::add_mesh(scene_, name, std::move(parts)); }
     void place(uint32_t mesh, const mat4& at) { kit::add_instance(scene_, mesh, at); }
     uint32_t china(const char* name, China piece, uint32_t painted) { return mesh(name, {{painted, std::move(piece.painted)}, {china_, std::move(piece.plain)}}); }
 

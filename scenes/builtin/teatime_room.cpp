@@ -15,8 +15,7 @@ using glm::vec2;
 using glm::vec3;
 using kit::pi;
 using kit::Profile;
-
-mat4 moved(vec3 by) { return glm::translate(mat4(1), by); }
+using kit::moved;
 
 Profile spun(const std::vector<vec2>& points, float detail) { return kit::spline(points, std::max(2, int(5 * detail + 0.5f))); }
 

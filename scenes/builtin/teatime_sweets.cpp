@@ -14,10 +14,10 @@ using glm::vec2;
 using glm::vec3;
 using kit::pi;
 using kit::Profile;
+using kit::moved;
 
 constexpr float cake_radius = 0.108f, cake_height = 0.084f;
 
-mat4 moved(vec3 by) { return glm::translate(mat4(1), by); }
 mat4 about_y(float angle) { return glm::rotate(mat4(1), angle, vec3(0, 1, 0)); }
 
 Profile spun(const std::vector<vec2>& points, float detail) { return kit::spline(points, std::max(2, int(5 * detail + 0.5f))); }

@@ -12,21 +12,9 @@ namespace {
 
 using glm::vec3;
 
-class Teatime : public testing::Test {
-protected:
-    static void SetUpTestSuite() {
-        scene = new Scene(load("builtin:teatime?detail=0.5"));
-        triangles = new Triangles(flatten(*scene, Sharing::never));
-    }
-    static void TearDownTestSuite() {
-        delete scene;
-        delete triangles;
-    }
-    static Scene* scene;
-    static Triangles* triangles;
+struct Teatime : BuiltinTest<Teatime> {
+    static constexpr const char* source = "builtin:teatime?detail=0.5";
 };
-Scene* Teatime::scene = nullptr;
-Triangles* Teatime::triangles = nullptr;
 
 TEST_F(Teatime, DetailScalesIt) {
     Scene whole = load("builtin:teatime");

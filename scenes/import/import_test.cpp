@@ -17,6 +17,7 @@
 
 #include "engine/error.hpp"
 #include "scenes/builtin/kit.hpp"
+#include "scenes/refusal.hpp"
 
 namespace myriad::scenes {
 namespace {
@@ -49,18 +50,7 @@ protected:
     Scene read(const std::string& name, const std::string& contents, const ImportOptions& options = {}) {
         return import_scene(put(name, contents), options);
     }
-    std::string refused(const std::string& path) {
-        try {
-            import_scene(path);
-        } catch (const InputError& e) {
-            const std::string message = e.what();
-            EXPECT_EQ(message.find(path), 0u) << message;
-            EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-            EXPECT_EQ(message.back(), '.') << message;
-            return message;
-        }
-        return "(accepted)";
-    }
+    std::string refused(const std::string& path) { return refusal(path, [&] { import_scene(path); }); }
 
     std::filesystem::path folder;
 };

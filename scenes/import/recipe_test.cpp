@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/error.hpp"
+#include "scenes/refusal.hpp"
 
 namespace myriad::scenes::importing {
 namespace {
@@ -40,16 +41,7 @@ protected:
     Scene make(const std::string& body) { return import_scene(put("r.json", "{\"recipe\": 1, " + body + "}")); }
     std::string refused(const std::string& text) {
         const std::string path = put("r.json", text);
-        try {
-            import_scene(path);
-        } catch (const InputError& e) {
-            const std::string message = e.what();
-            EXPECT_EQ(message.find(path), 0u) << message;
-            EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-            EXPECT_EQ(message.back(), '.') << message;
-            return message;
-        }
-        return "(accepted)";
+        return refusal(path, [&] { import_scene(path); });
     }
     void refuse(const std::string& body, const std::string& part) {
         const std::string message = refused("{\"recipe\": 1, " + body + "}");
