@@ -142,9 +142,8 @@ TEST_F(CacheTest, what_was_not_used_for_longest_goes_first) {
     for (const char* name : {"a", "b", "c"}) store(cache, name, numbers(2000, 7));
     EXPECT_EQ(files().size(), 3u);
     const auto long_ago = fs::file_time_type::clock::now() - std::chrono::hours(10);
-    for (const char* name : {"a", "b", "c"}) fs::last_write_time(folder / (std::string(name) + ".derived"), long_ago);
-    EXPECT_TRUE(cache.find("a"));
-    fs::last_write_time(folder / "b.derived", long_ago - std::chrono::hours(1));
+    for (const int age : {0, 1, 2}) fs::last_write_time(folder / ("cba"[age] + std::string(".derived")), long_ago - std::chrono::hours(age));
+    EXPECT_TRUE(cache.find("a")) << "the oldest, but used now";
     store(cache, "d", numbers(2000, 7));
     EXPECT_TRUE(cache.find("a"));
     EXPECT_FALSE(cache.find("b"));
