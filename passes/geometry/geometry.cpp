@@ -45,10 +45,10 @@ private:
         const uint64_t count = uint64_t(texture.width) * texture.height;
         if (texels.size() + count > scenes::none) throw InputError(scene_.name + ": its textures have more than 2^32 texels; make them smaller.");
         const uint first = packed_[index] = uint(texels.size());
-        texels.reserve(first + count);
+        texels.resize(first + count);  // grows by doubling: to reserve just enough for each texture would copy all that came before it
         for (uint64_t i = 0; i < count; ++i) {
             const uint8_t* c = &texture.rgba[4 * i];
-            texels.push_back(c[0] | uint(c[1]) << 8 | uint(c[2]) << 16 | uint(c[3]) << 24);
+            texels[first + i] = c[0] | uint(c[1]) << 8 | uint(c[2]) << 16 | uint(c[3]) << 24;
         }
         return first;
     }
