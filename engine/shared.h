@@ -4,6 +4,7 @@
 //   MYRIAD_BEGIN … MYRIAD_END   around everything in a shared header (a namespace in C++)
 //   MYRIAD_FN                   before a function
 //   MYRIAD_INOUT(T)             a parameter that is written
+//   MYRIAD_PRECISE              before a variable whose value must not depend on where its formula is compiled into: no fused operations
 //   MYRIAD_ARRAY(Name, T, A)    Name: the device address of an array of T aligned to A bytes; GLSL reads `x.at[i]`,
 //                               C++ gets the address from Recorder::read or write, never from a buffer itself
 #ifndef MYRIAD_ENGINE_SHARED_H
@@ -30,12 +31,14 @@ inline float uintBitsToFloat(uint v) { float f; std::memcpy(&f, &v, 4); return f
 inline uint floatBitsToUint(float v) { uint u; std::memcpy(&u, &v, 4); return u; }
 using glm::abs, glm::clamp, glm::cross, glm::dot, glm::floor, glm::max, glm::min, glm::normalize, glm::mix;
 using std::pow, std::sqrt;
+inline int findMSB(uint v) { return v == 0 ? -1 : 31 - __builtin_clz(v); }
 }  // namespace myriad
 
 #define MYRIAD_BEGIN namespace myriad {
 #define MYRIAD_END }
 #define MYRIAD_FN inline
 #define MYRIAD_INOUT(T) T&
+#define MYRIAD_PRECISE
 #define MYRIAD_ARRAY(Name, T, A) using Name = ::myriad::Ref<T>;
 
 #else
@@ -47,6 +50,7 @@ using std::pow, std::sqrt;
 #define MYRIAD_END
 #define MYRIAD_FN
 #define MYRIAD_INOUT(T) inout T
+#define MYRIAD_PRECISE precise
 #define MYRIAD_ARRAY(Name, T, A) \
     layout(buffer_reference, scalar, buffer_reference_align = A) buffer Name { T at[]; };
 #endif

@@ -52,8 +52,8 @@ MYRIAD_FN float bsh_reach(vec3 c, Sphere s) {
     const float y = s.center.y - c.y;
     const float z = s.center.z - c.z;
     if (x == 0.0f && y == 0.0f && z == 0.0f) return s.radius;
-    // 2^-60 m covers squares that underflow.
-    return (sqrt(x * x + y * y + z * z) + s.radius) * (1.0f + 1.0f / 1048576.0f) + 8.6736174e-19f;
+    // 2^-50 m covers squares that underflow, here and in the criterion of views as near as that: they are inside.
+    return (sqrt(x * x + y * y + z * z) + s.radius) * (1.0f + 1.0f / 1048576.0f) + 8.8817842e-16f;
 }
 
 // The frame of a block: the least corner of its children's centres, and the least power of two as the step that spans

@@ -37,6 +37,13 @@ struct BshRef {
 };
 
 MYRIAD_FN bool bsh_is_leaf(uint slot, uint leaves) { return slot < leaves; }
+// Levels above the leaves. Level k begins at slot 8n/7 (1 - 8^-k), so 8n - 7 slot lies in (8n 8^-(k+1), 8n 8^-k].
+MYRIAD_FN uint bsh_height(uint slot, uint leaves, uint blocks) {
+    const uint depth = uint(findMSB(leaves));
+    if (slot == bsh_arity * blocks) return max((depth + bsh_arity_log2 - 1u) / bsh_arity_log2, 1u);  // the root
+    const uint left = (leaves << bsh_arity_log2) - (bsh_arity - 1u) * slot;
+    return (depth + bsh_arity_log2 - 1u - uint(findMSB(left - 1u))) / bsh_arity_log2;
+}
 // The block that an inner node owns.
 MYRIAD_FN uint bsh_block_of(uint slot, uint leaves, uint blocks) {
     return slot == 8u * blocks ? blocks - 1u : slot - leaves;

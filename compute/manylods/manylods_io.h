@@ -31,20 +31,21 @@ struct WalkPush {
     uint first_view, limit;
 };
 
-// Where one node-view goes (ManyLoDs 3.1, on the exact stereographic size of the spec).
+// Where one node-view goes (ManyLoDs 3.1, on the exact stereographic size of the spec). A node `height` levels above the leaves that is not
+// open has no open node below it, in floating point: closed nodes' descendants are closed (paraboloid.h says why).
 const uint node_view_open = 0u;
 const uint node_view_drawn = 1u;
 const uint node_view_culled = 2u;
-MYRIAD_FN uint classify(View view, Sphere sphere, bool leaf, float epsilon, uint map_size) {
+MYRIAD_FN uint classify(View view, Sphere sphere, uint height, float epsilon, uint map_size) {
     const vec3 d = sphere.center - view.position;
-    if (outside_frustum(view, d, sphere.radius)) return node_view_culled;
-    return leaf || criterion(d, sphere.radius, map_size) < epsilon ? node_view_drawn : node_view_open;
+    if (outside_frustum(view, d, cull_radius(d, sphere.radius, height))) return node_view_culled;
+    return height == 0u || fits(d, sphere.radius, map_size, epsilon) ? node_view_drawn : node_view_open;
 }
 
 // The children of one block in one view: drawn | culled << 8 | open << 16, a bit a slot.
-MYRIAD_FN uint classify_child(View view, vec4 frame, uvec2 code, bool leaf, float epsilon, uint map_size) {
+MYRIAD_FN uint classify_child(View view, vec4 frame, uvec2 code, uint height, float epsilon, uint map_size) {
     if (bsh_is_absent(code)) return 0u;
-    const uint where = classify(view, bsh_decode(frame, code), leaf, epsilon, map_size);
+    const uint where = classify(view, bsh_decode(frame, code), height, epsilon, map_size);
     return where == node_view_drawn ? 0x1u : where == node_view_culled ? 0x100u : 0x10000u;
 }
 MYRIAD_END

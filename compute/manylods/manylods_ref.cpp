@@ -22,8 +22,7 @@ namespace {
 void visit(const HostTree& tree, uint view_index, const View& view, uint slot, float epsilon, uint map_size, CutRef& out) {
     if (tree.absent(slot)) return;
     ++out.tested;
-    const bool leaf = bsh_is_leaf(slot, tree.leaves);
-    switch (classify(view, tree.sphere(slot), leaf, epsilon, map_size)) {
+    switch (classify(view, tree.sphere(slot), bsh_height(slot, tree.leaves, tree.blocks), epsilon, map_size)) {
         case node_view_culled: out.cut.push_back({view_index, slot, true}); break;
         case node_view_drawn: out.cut.push_back({view_index, slot, false}); break;
         default: {

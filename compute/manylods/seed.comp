@@ -12,7 +12,7 @@ void main() {
     uint found = 0u;
     if (append_decides(item, push.lists))
         found = classify_child(push.views.at[view], push.tree.frames.at[over_root], push.tree.spheres.at[8u * over_root],
-                               bsh_is_leaf(8u * over_root, push.tree.leaves), push.epsilon, push.map_size);
+                               bsh_height(8u * over_root, push.tree.leaves, over_root), push.epsilon, push.map_size);
     found = append_payload(item, found, push.lists);
 
     const uint kept = found & 0xffffu;

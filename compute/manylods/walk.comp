@@ -25,7 +25,7 @@ void main() {
     const uint over_root = push.tree.blocks;
 
     const uint root = classify_child(view, push.tree.frames.at[over_root], push.tree.spheres.at[8u * over_root],
-                                     bsh_is_leaf(8u * over_root, leaves), push.epsilon, push.map_size);
+                                     bsh_height(8u * over_root, leaves, over_root), push.epsilon, push.map_size);
     keep(over_root, view_index, root & 0xffffu);
     if ((root >> 16) == 0u) return;
 

@@ -59,17 +59,50 @@ MYRIAD_FN float criterion(vec3 d, float r, uint size) {
     return float(size) * r / (abs(d.x) + sqrt(tangent2));
 }
 
-// Whether a sphere lies wholly outside the view's frustum cone. (a, b) are the coordinates of the centre along the axis and
-// away from it; -a sin(phi) + b cos(phi) is the signed distance from the cone's *side* (MegaViews, figure 4, with the
-// apex case of the spec: behind the apex of a cone of phi < pi/2 the nearest point is the apex itself).
-MYRIAD_FN bool outside_frustum(View view, vec3 d, float r) {
-    const float a = dot(view.direction, d);
-    if (view.cos_phi == 0.0f) return -a * view.sin_phi > r;  // a half-space: b does not matter
-    const vec3 off = d - a * view.direction;
-    const float b = sqrt(dot(off, off));  // sqrt(d^2 - a^2) would be off by 3e-4 |d| near the axis, and cull what is inside
-    if (view.cos_phi > 0.0f && a * view.cos_phi + b * view.sin_phi < 0.0f) return dot(d, d) > r * r;
-    return b * view.cos_phi - a * view.sin_phi > r;
+// c < epsilon, as cuts ask it. Where a view is all but inside a sphere (r > 0.968 L) L^2 - r^2 cancels, and the answer is no; elsewhere c is
+// good to 45 units in the last place. A sphere with another inside it has the larger c; so where it leaves the other 2^-16 of its radius,
+// as bounds of the tree do (bsh_slack), `fits` of the outer one implies `fits` of the inner one in floating point too (spec, section 2).
+MYRIAD_FN bool fits(vec3 d, float r, uint size, float epsilon) {
+    MYRIAD_PRECISE const float l2 = d.x * d.x + d.y * d.y + d.z * d.z;
+    MYRIAD_PRECISE const float tangent2 = l2 - r * r;
+    MYRIAD_PRECISE const float c = float(size) * r / (abs(d.x) + sqrt(max(tangent2, 0.0f)));
+    return tangent2 > 0.0625f * l2 && c < epsilon;
 }
+
+// Signed distance of the point d from the view's frustum cone, d relative to its apex; negative inside. (a, b) are its coordinates along
+// the axis and away from it; -a sin(phi) + b cos(phi) is the distance from the cone's *side* (MegaViews, figure 4, with the apex case
+// of the spec: behind the apex of a cone of phi < pi/2 the nearest point is the apex itself). Good to 2^-20 |d|.
+MYRIAD_FN float frustum_distance(View view, vec3 d) {
+    const vec3 n = view.direction;
+    MYRIAD_PRECISE const float a = n.x * d.x + n.y * d.y + n.z * d.z;
+    MYRIAD_PRECISE float distance = -a * view.sin_phi;
+    if (view.cos_phi != 0.0f) {  // not a half-space
+        MYRIAD_PRECISE const vec3 off = d - a * n;
+        MYRIAD_PRECISE const float b = sqrt(off.x * off.x + off.y * off.y + off.z * off.z);  // sqrt(d^2 - a^2) would be off by 3e-4 |d| near the axis
+        MYRIAD_PRECISE const float beyond = a * view.cos_phi + b * view.sin_phi;
+        distance = distance + b * view.cos_phi;
+        if (view.cos_phi > 0.0f && beyond < 0.0f) distance = sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
+    }
+    return distance;
+}
+
+// At least |d| + r, and no less for a sphere than for those inside it.
+MYRIAD_FN float reach_of(vec3 d, float r) {
+    MYRIAD_PRECISE const float reach = abs(d.x) + abs(d.y) + abs(d.z) + 2.0f * r;
+    return reach;
+}
+
+// The radius that a node is culled with, `height` levels above the leaves: larger by what rounding may do to a distance (2^-20 of it in the
+// node's and as much in its child's) for each level. The tree's own slack goes with the radius and is nothing for small far spheres: without
+// this a culled node could have a child that is not, and a cut that is updated would lose it.
+const float cull_margin = 1.0f / 262144.0f;
+MYRIAD_FN float cull_radius(vec3 d, float r, uint height) {
+    MYRIAD_PRECISE const float radius = r + float(height) * (cull_margin * reach_of(d, r));
+    return radius;
+}
+
+// Whether a sphere lies wholly outside the view's frustum.
+MYRIAD_FN bool outside_frustum(View view, vec3 d, float r) { return frustum_distance(view, d) > r; }
 
 // The footprint of a sphere in one half: a disc. `exists` is false where the sphere does not reach that half, `whole` is true
 // where the half has to be scanned whole: the view is inside the sphere, or the sphere covers the direction opposite

@@ -137,34 +137,46 @@ TEST_F(Paraboloid, criterion_is_infinite_inside_and_on_the_sphere) {
     EXPECT_EQ(criterion(vec3(0, 0, 1), 0, 32), 0);
 }
 
-// What makes cuts correct (spec, section 2), with the room that the tree leaves between a sphere and what it holds.
-TEST_F(Paraboloid, a_sphere_in_another_is_no_larger_and_no_nearer) {
+// What makes cuts correct (spec, section 2), with the room that the tree leaves between a sphere and what it holds: a node that is not
+// open holds none that is, in floating point, however small, far, or exactly touching.
+TEST_F(Paraboloid, what_a_closed_sphere_holds_is_closed) {
     const double slack = 1 + 1.0 / 65536;
-    size_t culled = 0, finite = 0;
-    for (int i = 0; i < 200000; ++i) {
+    size_t culled = 0, valid = 0, near_miss = 0;
+    for (int i = 0; i < 400000; ++i) {
         const vec3 outer_center(direction() * log_uniform(1e-3, 1e3));
-        const double share = i % 3 ? uniform(0, 1) : 1 - log_uniform(1e-6, 0.1);
-        const double size = glm::length(dvec3(outer_center)) * log_uniform(1e-4, 2);
-        const float inner_radius = float(share * size);
-        const vec3 inner_center(dvec3(outer_center) + direction() * (1 - share) * size);
+        const double share = i % 3 ? uniform(0, 1) : 1 - log_uniform(1e-9, 0.1);
+        const double size = glm::length(dvec3(outer_center)) * log_uniform(1e-9, 2);
+        const float inner_radius = i % 7 ? float(share * size) : 0;
+        const View axis = view(i % 3 ? pi / 2 : uniform(0.01, pi), direction());
+        // Anywhere in it, or where it comes nearest to the cone.
+        const dvec3 off = i % 2 ? direction() : -dvec3(axis.direction) * (axis.cos_phi == 0 ? -1.0 : double(axis.sin_phi));
+        const vec3 inner_center(dvec3(outer_center) + off * (1 - share) * size);
         const double need = (glm::length(dvec3(inner_center) - dvec3(outer_center)) + inner_radius) * slack;
         const float outer_radius = std::nextafter(float(need), 1e30f);
-        const vec3 eye(i % 2 ? dvec3(0) : direction() * log_uniform(1e-3, 1e3));
+        // Views anywhere, and such that the outer sphere just leaves their frustum.
+        View v = axis;
+        v.position = vec3(i % 2 ? dvec3(0) : direction() * log_uniform(1e-3, 1e3));
+        if (i % 5 == 0) {
+            const vec3 d = outer_center - v.position;
+            v.position -= vec3(double(cull_radius(d, outer_radius, 3) - frustum_distance(v, d)) * -dvec3(v.direction) * (1 + uniform(-1, 1) * 1e-6));
+        }
+        const vec3 outer = outer_center - v.position, inner = inner_center - v.position;
 
-        const vec3 outer = outer_center - eye, inner = inner_center - eye;
-        const float large = criterion(outer, outer_radius, 32), small = criterion(inner, inner_radius, 32);
-        ASSERT_GE(large, small);
-        finite += std::isfinite(large);
-
-        const View v = view(i % 3 ? pi / 2 : uniform(0.01, pi), direction());
-        if (!outside_frustum(v, outer, outer_radius)) continue;
-        ++culled;
-        if (outside_frustum(v, inner, inner_radius)) continue;
-        // The slack goes with the radius and rounding with the distance: of small far spheres that just touch, either may be kept.
-        const double distance = std::max(glm::length(dvec3(outer)), glm::length(dvec3(inner)));
-        ASSERT_LT(outer_radius * (slack - 1), 16 * ulp * distance);
+        for (uint size_in_texels : {2u, 32u, 1024u})
+            for (float epsilon : {0.5f, 2.0f, 30.0f, 1e3f}) {
+                if (!fits(outer, outer_radius, size_in_texels, epsilon)) continue;
+                ++valid;
+                ASSERT_TRUE(fits(inner, inner_radius, size_in_texels, epsilon)) << i << " size " << size_in_texels << " epsilon " << epsilon;
+            }
+        for (uint height : {1u, 3u, 9u}) {
+            const float outer_margin = frustum_distance(v, outer) - cull_radius(outer, outer_radius, height);
+            if (!(outer_margin > 0)) continue;
+            ++culled;
+            near_miss += frustum_distance(v, inner) <= inner_radius;  // what would have been lost without the margin
+            ASSERT_TRUE(outside_frustum(v, inner, cull_radius(inner, inner_radius, height - 1))) << i << " height " << height;
+        }
     }
-    EXPECT_TRUE(culled > 20000 && finite > 50000) << culled << " " << finite;
+    EXPECT_TRUE(culled > 100000 && valid > 500000) << culled << " " << valid << " " << near_miss;
 }
 
 // Signed distance of a point from a cone with its apex at the origin, by its definition: nearest points found by search.

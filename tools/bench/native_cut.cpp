@@ -24,20 +24,25 @@ inline uint open_block(const NativeTree& tree, uint block, const View& view, flo
     }
     const vec3 n = view.direction;
     const bool cone = view.cos_phi != 0;
+    const uint height = bsh_height(8 * block, tree.leaves, tree.blocks);
     uint outside[8], small[8];
     for (int i = 0; i < 8; ++i) {
         const float l2 = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
         const float a = n.x * x[i] + n.y * y[i] + n.z * z[i];
-        const float b = cone ? std::sqrt(std::max(l2 - a * a, 0.0f)) : 0.0f;
-        const bool behind_apex = view.cos_phi > 0 && a * view.cos_phi + b * view.sin_phi < 0;
-        const bool side = b * view.cos_phi - a * view.sin_phi > r[i];
-        const bool apex = l2 > r[i] * r[i];
-        outside[i] = (behind_apex ? apex : side) ? ~0u : 0u;
+        float distance = -a * view.sin_phi;
+        if (cone) {
+            const float off_x = x[i] - a * n.x, off_y = y[i] - a * n.y, off_z = z[i] - a * n.z;
+            const float b = std::sqrt(off_x * off_x + off_y * off_y + off_z * off_z);
+            const bool behind_apex = view.cos_phi > 0 && a * view.cos_phi + b * view.sin_phi < 0;
+            distance = behind_apex ? std::sqrt(l2) : distance + b * view.cos_phi;
+        }
+        const float reach = std::fabs(x[i]) + std::fabs(y[i]) + std::fabs(z[i]) + 2 * r[i];
+        outside[i] = distance > r[i] + float(height) * (cull_margin * reach) ? ~0u : 0u;
         const float tangent2 = l2 - r[i] * r[i];
         const float c = map_size * r[i] / (std::fabs(x[i]) + std::sqrt(std::max(tangent2, 0.0f)));
-        small[i] = tangent2 > 0 && c < epsilon ? ~0u : 0u;
+        small[i] = tangent2 > 0.0625f * l2 && c < epsilon ? ~0u : 0u;
     }
-    const uint leaf = bsh_is_leaf(8 * block, tree.leaves) ? ~0u : 0u;
+    const uint leaf = height == 0 ? ~0u : 0u;
     uint found = 0;
     for (int i = 0; i < 8; ++i) {
         const uint culled = present[i] & outside[i];
@@ -55,7 +60,7 @@ uint children(const NativeTree& tree, uint block) {
 }
 
 uint root_of(const NativeTree& tree, const View& view, float epsilon, uint map_size) {
-    return classify_child(view, tree.frames[tree.blocks], tree.spheres[size_t(tree.blocks) * 8], bsh_is_leaf(8 * tree.blocks, tree.leaves),
+    return classify_child(view, tree.frames[tree.blocks], tree.spheres[size_t(tree.blocks) * 8], bsh_height(8 * tree.blocks, tree.leaves, tree.blocks),
                           epsilon, map_size);
 }
 
