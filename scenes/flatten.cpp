@@ -1,4 +1,5 @@
-// Instances to triangles, in world space or shared, with every defect that a vertex can have repaired and counted.
+// Instances to triangles, in world space or shared, with every defect that a vertex can have repaired and counted. What moves
+// comes last, and motion_builder.* says how.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -6,7 +7,9 @@
 #include <unistd.h>
 
 #include "engine/error.hpp"
-#include "scenes/scene.hpp"
+#include "scenes/moment.hpp"
+#include "scenes/motion_builder.hpp"
+#include "scenes/normals.hpp"
 #include "scenes/sharing.hpp"
 
 namespace myriad::scenes {
@@ -29,17 +32,6 @@ bool flush_denormals(glm::vec3& v) {
     return any;
 }
 
-// The unit vector of `v`, or `fallback` where there is none. In double: squares of float coordinates overflow at 1e19.
-glm::vec3 unit_or(const glm::dvec3& v, const glm::vec3& fallback) {
-    const double length = glm::length(v);
-    return length > 0 && std::isfinite(length) ? glm::vec3(v / length) : fallback;
-}
-
-glm::dvec3 face_normal(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
-    const glm::dvec3 o(a);
-    return glm::cross(glm::dvec3(b) - o, glm::dvec3(c) - o);
-}
-
 // Normals transform by the cofactor matrix: the inverse transpose times the determinant, so it needs no division and
 // stays right for flattened (singular) instances; the sign of the determinant is put back by the caller.
 glm::dmat3 cofactors(const glm::dmat3& m) {
@@ -55,25 +47,34 @@ struct Defects {
     size_t dropped = 0, denormal = 0, bad_normals = 0, bad_texcoords = 0, bad_colors = 0;
 };
 
-// Appends one primitive of one instance.
+// Appends one primitive of one instance: where a transform places it, or where `posed` says that its vertices are.
 class Flattener {
 public:
     Flattener(Triangles& out, const Attributes& attributes, Defects& defects) : out_(out), attributes_(attributes), defects_(defects) {}
 
     void append(const Primitive& primitive, const glm::mat4& to_world) {
-        transform(primitive, to_world);
+        posed_ = nullptr;
+        linear_ = glm::dmat3(to_world);
+        mirrored_ = glm::determinant(linear_) < 0;
+        place(primitive, [&](size_t i) { return glm::vec3(to_world * glm::vec4(primitive.positions[i], 1)); });
+        if (primitive.normals.empty()) flat(primitive);
+        else smooth(primitive);
+    }
+
+    void append(const Primitive& primitive, PosedPrimitive& posed) {
+        posed_ = &posed;
+        place(primitive, [&](size_t i) { return posed.position(i); });
         if (primitive.normals.empty()) flat(primitive);
         else smooth(primitive);
     }
 
 private:
-    void transform(const Primitive& primitive, const glm::mat4& to_world) {
-        linear_ = glm::dmat3(to_world);
-        mirrored_ = glm::determinant(linear_) < 0;
+    template <class Where>
+    void place(const Primitive& primitive, Where where) {
         world_.resize(primitive.positions.size());
         usable_.resize(world_.size());
         for (size_t i = 0; i < world_.size(); ++i) {
-            world_[i] = glm::vec3(to_world * glm::vec4(primitive.positions[i], 1));
+            world_[i] = where(i);
             usable_[i] = std::abs(world_[i].x) <= farthest && std::abs(world_[i].y) <= farthest && std::abs(world_[i].z) <= farthest;
             defects_.denormal += flush_denormals(world_[i]);
         }
@@ -82,7 +83,8 @@ private:
     // The corners of triangle `t`, counter-clockwise as seen from its front in the world.
     glm::uvec3 corners(const Primitive& primitive, size_t t) const {
         const uint32_t* i = &primitive.indices[3 * t];
-        return mirrored_ ? glm::uvec3(i[0], i[2], i[1]) : glm::uvec3(i[0], i[1], i[2]);
+        const bool mirrored = posed_ ? posed_->mirrored(i[0]) : mirrored_;
+        return mirrored ? glm::uvec3(i[0], i[2], i[1]) : glm::uvec3(i[0], i[1], i[2]);
     }
 
     bool keep(const glm::uvec3& c) {
@@ -110,6 +112,7 @@ private:
     glm::vec4 tangent(const Primitive& primitive, uint32_t i) const {
         if (primitive.tangents.empty() || primitive.normals.empty()) return glm::vec4(0, 0, 0, 1);
         const glm::vec4& t = primitive.tangents[i];
+        if (posed_) return posed_->tangent(i);
         return glm::vec4(unit_or(linear_ * glm::dvec3(t), glm::vec3(0)), (t.w < 0) != mirrored_ ? -1 : 1);
     }
 
@@ -123,6 +126,7 @@ private:
         if (attributes_.texcoords1)
             out_.texcoords1.push_back(primitive.texcoords1.empty() ? out_.texcoords.back() : texcoord(primitive.texcoords1, i));
         if (attributes_.tangents) out_.tangents.push_back(tangent(primitive, i));
+        if (posed_) posed_->keep(i, usable_[i]);
     }
 
     void flat(const Primitive& primitive) {
@@ -131,6 +135,7 @@ private:
             if (!keep(c)) continue;
             const glm::vec3 n = unit_or(face_normal(world_[c.x], world_[c.y], world_[c.z]), up);
             const uint32_t first = uint32_t(out_.positions.size());
+            if (posed_) posed_->keep_flat();
             for (int k = 0; k < 3; ++k) vertex(primitive, c[k], n);
             out_.triangles.emplace_back(first, first + 1, first + 2, primitive.material);
         }
@@ -140,31 +145,26 @@ private:
         const uint32_t first = uint32_t(out_.positions.size());
         const glm::dmat3 to_normal = cofactors(linear_) * (mirrored_ ? -1.0 : 1.0);
         for (uint32_t i = 0; i < world_.size(); ++i)
-            vertex(primitive, i, unit_or(to_normal * glm::dvec3(primitive.normals[i]), glm::vec3(0)));
+            vertex(primitive, i, posed_ ? posed_->normal(i) : unit_or(to_normal * glm::dvec3(primitive.normals[i]), glm::vec3(0)));
         const size_t first_triangle = out_.triangles.size();
         for (size_t t = 0; 3 * t < primitive.indices.size(); ++t)
             if (const glm::uvec3 c = corners(primitive, t); keep(c)) out_.triangles.emplace_back(c + first, primitive.material);
         repair_normals(first, first_triangle);
     }
 
-    // A zero or non-finite normal is replaced by the area-weighted mean of the faces around the vertex.
+    // A zero or non-finite normal is replaced by what its faces say.
     void repair_normals(uint32_t first, size_t first_triangle) {
-        std::vector<glm::dvec3> sums;
-        for (size_t i = first; i < out_.normals.size(); ++i)
-            if (out_.normals[i] == glm::vec3(0)) sums.resize(out_.normals.size() - first);
-        if (sums.empty()) return;
-        for (size_t t = first_triangle; t < out_.triangles.size(); ++t) {
-            const glm::uvec4 c = out_.triangles[t];
-            const glm::dvec3 n = face_normal(out_.positions[c.x], out_.positions[c.y], out_.positions[c.z]);
-            for (int k = 0; k < 3; ++k) sums[c[k] - first] += n;
-        }
-        for (size_t i = 0; i < sums.size(); ++i)
-            if (auto& n = out_.normals[first + i]; n == glm::vec3(0)) n = unit_or(sums[i], up), ++defects_.bad_normals;
+        const std::span<glm::vec3> normals(out_.normals.data() + first, out_.normals.size() - first);
+        defects_.bad_normals += scenes::repair_normals(normals, std::span(out_.positions).subspan(first), [&](auto face) {
+            for (size_t t = first_triangle; t < out_.triangles.size(); ++t)
+                face(out_.triangles[t].x - first, out_.triangles[t].y - first, out_.triangles[t].z - first);
+        });
     }
 
     Triangles& out_;
     const Attributes attributes_;
     Defects& defects_;
+    PosedPrimitive* posed_ = nullptr;
     glm::dmat3 linear_{1};
     std::vector<glm::vec3> world_;
     std::vector<bool> usable_;
@@ -181,12 +181,18 @@ void reserve(Triangles& out, const Attributes& attributes, size_t vertices, size
     out.triangles.reserve(triangles);
 }
 
+// At most; morph targets often leave most vertices where they are.
+uint64_t motion_bytes_a_vertex(const Primitive& p) {
+    const size_t influences = p.joints[0].empty() ? 1 : p.joints[1].empty() ? 4 : 8;
+    return sizeof(MovingVertex) + sizeof(glm::vec4) + influences * sizeof(Influence) + p.targets.size() * sizeof(MorphDelta);
+}
+
 // A file of a megabyte can place a mesh a hundred thousand times, and where instances cannot be shared each is written out. More
 // than the machine has is refused before the system has to end the program for it.
-void require_memory(const Attributes& attributes, size_t vertices, size_t triangles) {
+void require_memory(const Attributes& attributes, size_t vertices, size_t triangles, uint64_t others) {
     const uint64_t vertex = 2 * sizeof(glm::vec3) + sizeof(glm::vec2) + (attributes.colors ? sizeof(glm::vec4) : 0) +
                             (attributes.texcoords1 ? sizeof(glm::vec2) : 0) + (attributes.tangents ? sizeof(glm::vec4) : 0);
-    const uint64_t needed = vertex * vertices + sizeof(glm::uvec4) * triangles;
+    const uint64_t needed = vertex * vertices + sizeof(glm::uvec4) * triangles + others;
     const uint64_t machine = uint64_t(sysconf(_SC_PHYS_PAGES)) * uint64_t(sysconf(_SC_PAGESIZE));
     if (needed > machine)
         throw OutOfMemory("the scene's instances take " + std::to_string(needed >> 30) + " GiB written out, and the machine has " +
@@ -206,20 +212,57 @@ void find_bounds(Triangles& out, const std::vector<Placement>& placements) {
     if (out.count() > 0) out.lo = lo, out.hi = hi;
 }
 
+// Adds where moving vertices get while the clips play, looked at at so many moments. What a matrix moves stays in the box of it
+// that the matrix moves, and a vertex between those of its matrices.
+void widen_bounds(const Scene& scene, Triangles& out) {
+    constexpr int moments = 128;
+    const Motion& motion = out.motion;
+    double duration = 0;
+    for (const uint32_t clip : motion.playback.clips) duration = std::max(duration, scene.clips[clip].duration());
+    std::vector<Moment> at;
+    for (int i = 0; i <= moments; ++i) at.push_back(moment_at(scene, motion, duration * i / moments));
+    std::vector<float> least(motion.weights.size()), most(least);
+    for (const Moment& moment : at)
+        for (size_t i = 0; i < least.size(); ++i) least[i] = std::min(least[i], moment.weights[i]), most[i] = std::max(most[i], moment.weights[i]);
+    const glm::vec3 infinity(std::numeric_limits<float>::infinity());
+    std::vector<glm::vec3> lo(motion.matrices.size(), infinity), hi(motion.matrices.size(), -infinity);
+    for (uint32_t i = 0; i < motion.count(); ++i) {
+        const MovingVertex &v = motion.vertices[i], &next = motion.vertices[i + 1];
+        glm::vec3 low = v.position, high = v.position;
+        for (uint32_t k = v.deltas; k < next.deltas; ++k) {
+            const MorphDelta& d = motion.deltas[k];
+            low += glm::min(d.position * least[d.weight], d.position * most[d.weight]);
+            high += glm::max(d.position * least[d.weight], d.position * most[d.weight]);
+        }
+        for (uint32_t k = v.influences; k < next.influences; ++k) {
+            const uint32_t m = motion.influences[k].matrix;
+            lo[m] = glm::min(lo[m], low), hi[m] = glm::max(hi[m], high);
+        }
+    }
+    for (const Moment& moment : at)
+        for (size_t m = 0; m < lo.size(); ++m)
+            for (int corner = 0; corner < 8 && lo[m].x <= hi[m].x; ++corner) {
+                const glm::vec3 p(corner & 1 ? hi[m].x : lo[m].x, corner & 2 ? hi[m].y : lo[m].y, corner & 4 ? hi[m].z : lo[m].z);
+                const glm::vec3 world = settled_point(affine_point(moment.matrices[m], p));
+                out.lo = glm::min(out.lo, world), out.hi = glm::max(out.hi, world);
+            }
+}
+
 }  // namespace
 
-Triangles flatten(Scene& scene, Sharing sharing) {
+Triangles flatten(Scene& scene, Sharing sharing, const Playback& playback) {
     Triangles out;
     Defects defects;
     Attributes attributes;
-    const SharingPlan plan = plan_sharing(scene, sharing);
+    const std::vector<Stance> stance = stances(scene, playback);
+    const SharingPlan plan = plan_sharing(scene, sharing, stance);
     // What comes to be stored: each instance, but of shared meshes the first.
     std::vector<bool> stored(scene.meshes.size());
     size_t vertices = 0, triangles = 0;
-    uint64_t in_the_world = 0;
+    uint64_t in_the_world = 0, motion_bytes = 0;
     for (size_t i = 0; i < scene.instances.size(); ++i) {
         const uint32_t mesh = scene.instances[i].mesh;
-        const bool again = plan.shares[i] && stored[mesh];
+        const bool again = plan.shares[i] && stored[mesh], moves = stance[i] == Stance::moving;
         if (plan.shares[i]) stored[mesh] = true;
         for (const Primitive& p : scene.meshes[mesh].primitives) {
             in_the_world += p.indices.size() / 3;
@@ -229,40 +272,67 @@ Triangles flatten(Scene& scene, Sharing sharing) {
             attributes.tangents |= !p.tangents.empty() && !p.normals.empty();
             vertices += p.normals.empty() ? p.indices.size() : p.positions.size();
             triangles += p.indices.size() / 3;
+            if (moves) motion_bytes += (p.normals.empty() ? p.indices.size() : p.positions.size()) * motion_bytes_a_vertex(p);
         }
     }
     if (vertices >= none || in_the_world >= none / 3)
         throw InputError("the scene has more than 2^32 vertices; give fewer instances or coarser meshes.");
-    require_memory(attributes, vertices, triangles);
+    require_memory(attributes, vertices, triangles, motion_bytes);
     reserve(out, attributes, vertices, triangles);
 
     Flattener flattener(out, attributes, defects);
     std::vector<Placement> placements, first_of(scene.meshes.size());
+    const auto place = [&](Placement placement) {
+        if (placement.count == 0) return;
+        if (!placements.empty()) {
+            Placement& last = placements.back();
+            placement.first_id = last.first_id + last.count;
+            if (last.in_world && placement.in_world && last.first_triangle + last.count == placement.first_triangle)
+                return void(last.count += placement.count);
+        }
+        placements.push_back(placement);
+    };
     for (size_t i = 0; i < scene.instances.size(); ++i) {
-        const auto& [mesh, to_world] = scene.instances[i];
-        Placement& first = first_of[mesh];  // of a shared mesh: where its triangles are, once they are
-        Placement placement{.to_world = plan.shares[i] ? to_world : glm::mat4(1), .in_world = !plan.shares[i],
+        if (stance[i] != Stance::still) continue;
+        const Instance& instance = scene.instances[i];
+        Placement& first = first_of[instance.mesh];  // of a shared mesh: where its triangles are, once they are
+        Placement placement{.to_world = plan.shares[i] ? instance.to_world : glm::mat4(1), .in_world = !plan.shares[i],
                             .first_triangle = uint32_t(out.triangles.size())};
         if (plan.shares[i] && !first.in_world) {
             placement.first_triangle = first.first_triangle, placement.count = first.count;
         } else {
-            for (const Primitive& primitive : scene.meshes[mesh].primitives) flattener.append(primitive, plan.shares[i] ? glm::mat4(1) : to_world);
+            for (const Primitive& primitive : scene.meshes[instance.mesh].primitives)
+                flattener.append(primitive, plan.shares[i] ? glm::mat4(1) : instance.to_world);
             placement.count = uint32_t(out.triangles.size()) - placement.first_triangle;
             if (plan.shares[i]) first = placement;
         }
-        if (placement.count == 0) continue;
-        if (!placements.empty()) {
-            Placement& last = placements.back();
-            placement.first_id = last.first_id + last.count;
-            if (last.in_world && placement.in_world && last.first_triangle + last.count == placement.first_triangle) {
-                last.count += placement.count;
-                continue;
+        place(placement);
+    }
+    // What is posed once, then what moves: at the end, so that all before it never changes.
+    for (const Stance which : {Stance::posed, Stance::moving}) {
+        if (std::ranges::find(stance, which) == stance.end()) continue;
+        MotionBuilder builder(scene, stance, which, playback);
+        builder.with_tangents = attributes.tangents;
+        builder.motion.first_vertex = uint32_t(out.positions.size());
+        builder.motion.first_triangle = uint32_t(out.triangles.size());
+        for (size_t i = 0; i < scene.instances.size(); ++i) {
+            if (stance[i] != which) continue;
+            for (const Primitive& primitive : scene.meshes[scene.instances[i].mesh].primitives) {
+                PosedPrimitive posed(builder, uint32_t(i), primitive);
+                defects.bad_normals += posed.bad_normals();
+                flattener.append(primitive, posed);
             }
         }
-        placements.push_back(placement);
+        place({.first_triangle = builder.motion.first_triangle, .count = uint32_t(out.triangles.size()) - builder.motion.first_triangle});
+        if (which == Stance::posed) continue;
+        builder.finish();
+        out.motion = std::move(builder.motion);
+        deform(out, builder.moment);
     }
+    out.motion.playback = playback;
     if (std::any_of(placements.begin(), placements.end(), [](const Placement& p) { return !p.in_world; })) out.placements = placements;
     find_bounds(out, placements);
+    if (out.motion.count() > 0) widen_bounds(scene, out);
 
     const auto warn = [&](size_t count, const char* what) {
         if (count) scene.warnings.push_back(std::to_string(count) + what);

@@ -12,9 +12,10 @@
 
 #include <glm/glm.hpp>
 
-namespace myriad::scenes {
+#include "scenes/animation.hpp"
+#include "scenes/motion.hpp"
 
-inline constexpr uint32_t none = ~0u;  // "no texture", "no material" …
+namespace myriad::scenes {
 
 // Coordinates beyond this, in metres, are as good as infinite: of what is nearer, squares of distances, areas and fluxes stay
 // finite in 32-bit floats.
@@ -50,6 +51,12 @@ struct Material {
     bool double_sided = false;
 };
 
+// How far each vertex of a primitive goes with a weight of 1.
+struct MorphTarget {
+    std::vector<glm::vec3> positions;   // one a vertex; empty: none moves
+    std::vector<glm::vec3> normals;     // one a vertex; empty: normals stay
+};
+
 struct Primitive {
     std::vector<glm::vec3> positions;
     std::vector<glm::vec3> normals;     // unit; empty: flat shading from the geometry
@@ -58,22 +65,30 @@ struct Primitive {
     std::vector<glm::vec4> colors;      // linear, with alpha; empty: white
     std::vector<uint32_t> indices;      // three a triangle, always present, always in range
     uint32_t material = 0;
+    // For skins: joints of the skin and their weights, four a vertex and set, which sum to 1; empty: no such set.
+    std::vector<glm::u16vec4> joints[2];
+    std::vector<glm::vec4> joint_weights[2];
+    std::vector<MorphTarget> targets;   // as many in all primitives of a mesh
 };
 
 struct Mesh {
     std::string name;
     std::vector<Primitive> primitives;
+    std::vector<float> weights;  // of the morph targets where no node says others; one a target
 };
 
 struct Instance {
     uint32_t mesh = 0;
-    glm::mat4 to_world{1};
+    glm::mat4 to_world{1};      // at rest
+    uint32_t node = none;       // that it stands at, where that can matter: it can move, or is skinned or morphed
+    uint32_t skin = none;       // only with a node; its joints place the mesh then, to_world does not
 };
 
 struct Camera {
     std::string name;
     glm::mat4 to_world{1};        // looks along -Z, +Y up, as in glTF
     float yfov = 0.8f;            // radians, the full vertical angle
+    uint32_t node = none;         // that it goes with, where that can move
 };
 
 struct Light {
@@ -83,6 +98,7 @@ struct Light {
     glm::vec3 direction{0, 0, -1};// world, unit, the way the light travels
     glm::vec3 intensity{0};       // colour times intensity: W/sr (point, spot) or W/m^2 (directional)
     float inner_cone = 0, outer_cone = 0.785398f;  // spot: half-angles, radians
+    uint32_t node = none;         // that it goes with, where that can move
 };
 
 struct Scene {
@@ -94,6 +110,10 @@ struct Scene {
     std::vector<Light> lights;
     std::vector<Camera> cameras;       // may be empty: see framing_camera()
     glm::vec3 background{0};           // radiance, the same in all directions, of what rays that leave the scene see
+    // What can move, and what that hangs from; all empty for a scene that stands still.
+    std::vector<Node> nodes;
+    std::vector<Skin> skins;
+    std::vector<Clip> clips;
     std::vector<std::string> warnings; // harmless defects that were repaired or ignored, one sentence each
 };
 
@@ -117,7 +137,9 @@ struct Triangles {
     std::vector<glm::uvec4> triangles;           // three vertex indices, then the material
     // By ids, without gaps. Empty where no mesh is shared: all is in world space, and a triangle's id is its index.
     std::vector<Placement> placements;
-    glm::vec3 lo{0}, hi{0};                      // bounds of what triangles use, in the world; lo == hi == 0 when empty
+    // Bounds of what triangles use, in the world, over all that plays; lo == hi == 0 when empty.
+    glm::vec3 lo{0}, hi{0};
+    Motion motion;                               // what clips move of this; empty where none plays
 
     uint32_t count() const {                     // of the world's triangles
         return placements.empty() ? uint32_t(triangles.size()) : placements.back().first_id + placements.back().count;
@@ -143,7 +165,10 @@ inline constexpr double sharing_most_distortion = 8192;
 // `farthest` (counted in a warning that is appended to `scene.warnings`). Zero-area triangles stay: they are harmless
 // downstream and keep indices stable.
 // Where a mesh is shared, its vertices stay in its own space, and Triangles::placements say where it stands.
-Triangles flatten(Scene& scene, Sharing sharing = Sharing::automatic);
+// Where clips play, what they move comes last and is described by Triangles::motion; positions and normals are those of second 0,
+// whatever moment is rendered first, so that what is derived of them is the same for all. Skins and morph targets that no clip
+// moves are applied for good.
+Triangles flatten(Scene& scene, Sharing sharing = Sharing::automatic, const Playback& playback = {});
 
 // A camera that sees the whole scene, for scenes without one.
 Camera framing_camera(const Triangles& triangles);

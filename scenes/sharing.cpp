@@ -55,7 +55,7 @@ bool can_share(const MeshUse& mesh, const glm::mat4& to_world) {
     return std::max({largest, most.x, most.y, most.z}) < 0.999 * double(farthest) && largest > 1e-12;
 }
 
-SharingPlan plan_sharing(const Scene& scene, Sharing sharing) {
+SharingPlan plan_sharing(const Scene& scene, Sharing sharing, const std::vector<Stance>& stances) {
     SharingPlan plan{std::vector<MeshUse>(scene.meshes.size()), std::vector<bool>(scene.instances.size())};
     if (sharing == Sharing::never) return plan;
     for (size_t i = 0; i < scene.meshes.size(); ++i) plan.meshes[i] = measure(scene.meshes[i]);
@@ -63,7 +63,8 @@ SharingPlan plan_sharing(const Scene& scene, Sharing sharing) {
     for (size_t i = 0; i < scene.instances.size(); ++i) {
         MeshUse& use = plan.meshes[scene.instances[i].mesh];
         all += double(use.bytes);
-        plan.shares[i] = use.triangles > 0 && can_share(use, scene.instances[i].to_world);
+        const bool still = stances.empty() || stances[i] == Stance::still;
+        plan.shares[i] = still && use.triangles > 0 && can_share(use, scene.instances[i].to_world);
         use.instances += plan.shares[i];
     }
     const bool always = sharing == Sharing::always;

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "scenes/scene.hpp"
+#include "scenes/stance.hpp"
 
 namespace myriad::scenes {
 
@@ -21,7 +21,8 @@ struct SharingPlan {
     std::vector<MeshUse> meshes;
     std::vector<bool> shares;       // an instance each: its mesh is stored once, and it is one of those who share it
 };
-SharingPlan plan_sharing(const Scene& scene, Sharing sharing);
+// Only instances that stand still share. `stances`: one an instance; empty: all do.
+SharingPlan plan_sharing(const Scene& scene, Sharing sharing, const std::vector<Stance>& stances = {});
 
 // Whether rays can be traced in the mesh's own space: the transform is affine and regular, what is rounded off world
 // coordinates is small beside the mesh (sharing_most_distortion), and nothing is beyond `farthest` in either space.

@@ -8,15 +8,10 @@
 #include <glm/gtc/type_ptr.hpp>
 
 #include "engine/error.hpp"
+#include "scenes/moment.hpp"
 
 namespace myriad::scenes::gltf {
 namespace {
-
-glm::dmat4 compose(const glm::dvec3& translation, const glm::dquat& rotation, const glm::dvec3& scale) {
-    const double length = glm::length(rotation);
-    const glm::dquat unit = length > 0 && std::isfinite(length) ? rotation / length : glm::dquat(1, 0, 0, 0);
-    return glm::translate(glm::dmat4(1), translation) * glm::mat4_cast(unit) * glm::scale(glm::dmat4(1), scale);
-}
 
 glm::dmat4 local_transform(const Place& place, const tinygltf::Node& node) {
     const auto check = [&](const std::vector<double>& v, size_t n, const char* what) {
@@ -30,21 +25,7 @@ glm::dmat4 local_transform(const Place& place, const tinygltf::Node& node) {
     if (check(node.translation, 3, "translation")) translation = glm::make_vec3(node.translation.data());
     if (check(node.rotation, 4, "rotation")) rotation = {node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]};
     if (check(node.scale, 3, "scale")) scale = glm::make_vec3(node.scale.data());
-    return compose(translation, rotation, scale);
-}
-
-// Whether a transform is one that a scene can be computed with.
-bool sane(const glm::dmat4& m) {
-    const glm::mat4 narrow(m);
-    const bool near = glm::all(glm::lessThanEqual(glm::abs(glm::vec3(narrow[3])), glm::vec3(farthest)));  // NaN is not
-    return near && std::all_of(glm::value_ptr(narrow), glm::value_ptr(narrow) + 16, [](float x) { return std::isfinite(x); });
-}
-
-// The direction of a vector, where it has one.
-std::optional<glm::dvec3> direction(const glm::dvec3& v) {
-    const double length = glm::length(v);
-    if (!(length > 0 && std::isfinite(length))) return {};
-    return v / length;
+    return Transform{translation, rotation, scale}.matrix();
 }
 
 // What stands in the hierarchy but cannot be used, by what is the matter.
@@ -62,18 +43,14 @@ struct LeftOut {
     }
 };
 
-// A camera has a place and looks along -Z, with its Y axis as far up as that leaves; scale in the hierarchy above it does
-// not concern it, but for a scale of 0. False where that leaves no camera.
+// False where the transform leaves no camera.
 bool add_camera(const Place& place, const tinygltf::Node& node, const tinygltf::Camera& in, const glm::dmat4& to_world, Scene& scene) {
     const std::string name = !node.name.empty() ? node.name : in.name;  // one glTF camera may stand at several nodes
     const double yfov = in.perspective.yfov;
     if (!(yfov > 1e-4) || !(yfov < 3.14159)) place.at("camera " + quote(name)).fail("yfov is not between 0 and pi", "correct it");
-    const auto back = direction(glm::dvec3(to_world[2]));
-    const auto right = back ? direction(glm::cross(glm::dvec3(to_world[1]), *back)) : back;
-    if (!right || !sane(to_world)) return false;
-    const glm::dmat3 axes(*right, glm::cross(*back, *right), *back);
-    scene.cameras.push_back({name, glm::mat4(glm::mat3(axes)), float(yfov)});
-    scene.cameras.back().to_world[3] = to_world[3];
+    Camera camera{.name = name, .yfov = float(yfov)};
+    if (!place_camera(camera, to_world)) return false;
+    scene.cameras.push_back(camera);
     return true;
 }
 
@@ -100,10 +77,7 @@ bool add_light(const Place& place, const tinygltf::Node& node, const tinygltf::V
         if (!(light.inner_cone >= 0) || !(light.inner_cone <= light.outer_cone) || !(light.outer_cone <= 1.5707964f))
             here.fail("its cone angles are not 0 <= inner <= outer <= pi/2", "correct them");
     }
-    const auto along = direction(-glm::dvec3(to_world[2]));
-    if (!sane(to_world) || (!along && light.type != Light::Type::point)) return false;
-    light.position = glm::vec3(to_world[3]);
-    if (along) light.direction = glm::vec3(*along);
+    if (!place_light(light, to_world)) return false;
     scene.lights.push_back(light);
     return true;
 }
@@ -133,8 +107,8 @@ std::vector<glm::dmat4> instance_transforms(const Place& outer, const tinygltf::
     out.reserve(count.value_or(1));
     for (size_t i = 0; i < count.value_or(1); ++i) {
         const glm::dvec4 r = rotations.empty() ? glm::dvec4(0, 0, 0, 1) : glm::dvec4(rotations[i]);
-        out.push_back(compose(translations.empty() ? glm::dvec3(0) : glm::dvec3(translations[i]), glm::dquat(r.w, r.x, r.y, r.z),
-                              scales.empty() ? glm::dvec3(1) : glm::dvec3(scales[i])));
+        out.push_back(Transform{translations.empty() ? glm::dvec3(0) : glm::dvec3(translations[i]), glm::dquat(r.w, r.x, r.y, r.z),
+                                scales.empty() ? glm::dvec3(1) : glm::dvec3(scales[i])}.matrix());
     }
     return out;
 }
