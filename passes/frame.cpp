@@ -130,10 +130,12 @@ void Frame::render(const scenes::Camera& camera) {
 // The few words of a frame that the host looks at: the number of VPLs, and whether every ray walk came to its end.
 void Frame::read_back_words() {
     std::fill(host_words_.span().begin(), host_words_.span().end(), 0u);
-    auto fetch = [&](const engine::Array<uint>& from, uint64_t word) { recorder_.copy(from, host_words_, sizeof(uint), 0, word * sizeof(uint)); };
+    auto fetch = [&](const engine::Array<uint>& from, uint64_t to, uint64_t word = 0) {
+        recorder_.copy(from, host_words_, sizeof(uint), word * sizeof(uint), to * sizeof(uint));
+    };
     fetch(gbuffer_.exhausted(), 1);
     if (direct_) fetch(direct_->exhausted(), 2);
-    if (vpl_) fetch(vpl_->count(), 0), fetch(vpl_->exhausted(), 3), fetch(exhausted_, 4);
+    if (vpl_) fetch(vpl_->count(), 0, 1), fetch(vpl_->exhausted(), 3), fetch(exhausted_, 4);
     recorder_.submit_and_wait();
     for (uint exhausted : host_words_.span().subspan(1))
         if (exhausted)

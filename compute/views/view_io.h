@@ -19,6 +19,17 @@ struct View {
 };
 MYRIAD_ARRAY(Views, View, 16)
 
+// A view that sees nothing: a hemisphere that looks away from everything, from far beyond what scenes may hold (1e9 m). The root is
+// culled, so its cut costs one node-view, and its map stays clear.
+MYRIAD_FN View view_of_nothing() {
+    View view;
+    view.position = vec3(1e15f, 0.0f, 0.0f);
+    view.cos_phi = 0.0f;
+    view.direction = vec3(1.0f, 0.0f, 0.0f);
+    view.sin_phi = 1.0f;
+    return view;
+}
+
 // A sphere around a node, in world space.
 struct Sphere {
     vec3 center;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <numeric>
 
 #include "engine/transfer.hpp"
 
@@ -25,15 +26,16 @@ double power_of(const Light& light) {
     }
 }
 
-Light punctual_light(const scenes::Light& from, const scenes::Triangles& triangles) {
+// `lo`, `size`: the scene's bounds.
+Light punctual_light(const scenes::Light& from, const vec3& lo, const vec3& size) {
     Light light{.position = from.position, .type = uint(from.type), .direction = from.direction, .cdf = 0,
                 .intensity = from.intensity, .triangle = scenes::none, .extent = vec3(0), .cos_outer = 0};
     if (light.type == light_spot) {
         light.cos_outer = float(std::cos(double(from.outer_cone)));
         light.extent.x = float(std::max(0.001, std::cos(double(from.inner_cone)) - std::cos(double(from.outer_cone))));
     } else if (light.type == light_directional) {
-        light.position = triangles.lo;
-        light.extent = triangles.hi - triangles.lo;
+        light.position = lo;
+        light.extent = size;
     }
     return light;
 }
@@ -113,7 +115,7 @@ double area_of(const Corners& c) {
 LightData light_data(const scenes::Scene& scene, const scenes::Triangles& triangles, const GeometryData& geometry) {
     LightData data;
     for (const scenes::Light& light : scene.lights) {
-        data.lights.push_back(punctual_light(light, triangles));
+        data.lights.push_back(punctual_light(light, triangles.lo, triangles.hi - triangles.lo));
         data.powers.push_back(power_of(data.lights.back()));
     }
     data.punctual = uint32_t(data.lights.size());
@@ -149,10 +151,35 @@ void share_out(std::vector<Light>& lights, const std::vector<double>& weights) {
     }
 }
 
+void move_lights(std::vector<Light>& copy, std::span<const Light> punctual_now, const std::vector<double>& weights) {
+    bool left_out = false;
+    for (size_t i = 0; i < punctual_now.size(); ++i) {
+        const float share = copy[i].cdf - (i > 0 ? copy[i - 1].cdf : 0), cdf = copy[i].cdf;
+        left_out = left_out || (weights[i] > 0 && !(share > 0));
+        copy[i] = punctual_now[i];
+        copy[i].cdf = cdf;
+    }
+    if (left_out) share_out(copy, weights);
+}
+
 LightTable::LightTable(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles, const GeometryData& geometry)
     : LightTable(device, light_data(scene, triangles, geometry)) {}
 
 LightTable::LightTable(engine::Device& device, LightData data)
-    : data_(std::move(data)), lights_(engine::upload(device, "scene", "lights", data_.lights)) {}
+    : device_(device), data_(std::move(data)), lights_(engine::upload(device, "scene", "lights", data_.lights)) {}
+
+void LightTable::move(std::span<const scenes::Light> lights) {
+    assert(lights.size() == punctual());
+    std::vector<Light> now;
+    for (size_t i = 0; i < lights.size(); ++i) {
+        assert(uint(lights[i].type) == data_.lights[i].type);
+        now.push_back(punctual_light(lights[i], data_.lights[i].position, data_.lights[i].extent));
+        data_.powers[i] = power_of(now[i]);
+    }
+    data_.power = std::accumulate(data_.powers.begin(), data_.powers.end(), 0.0);
+    move_lights(data_.lights, now, data_.powers);
+    engine::upload_bytes(device_, data_.lights.data(), lights_, lights_.bytes());
+    ++moves_;
+}
 
 }  // namespace myriad::passes

@@ -1,6 +1,8 @@
 // The light table: punctual lights, then emissive triangles, with shares of power for sampling; see README.md.
 #pragma once
 
+#include <span>
+
 #include "engine/recorder.hpp"
 #include "passes/geometry/geometry.hpp"
 #include "passes/geometry/light_io.h"
@@ -20,9 +22,17 @@ LightData light_data(const scenes::Scene& scene, const scenes::Triangles& triang
 // Sets each light's cdf, so that lights are chosen in proportion to these weights, a light's share of the whole each.
 void share_out(std::vector<Light>& lights, const std::vector<double>& weights);
 
+// Puts punctual lights where they are now, in a copy of the table of old whose shares may differ from it. Shares stay, for paths stay
+// with their lights; but where a light shines that has none, all are dealt out anew by these weights.
+void move_lights(std::vector<Light>& copy, std::span<const Light> punctual_now, const std::vector<double>& weights);
+
 class LightTable {
 public:
     LightTable(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles, const GeometryData& geometry);
+
+    // The scene's punctual lights have moved: they are as many, of the same kinds, in the same order. Between submissions.
+    void move(std::span<const scenes::Light> lights);
+    uint32_t moves() const { return moves_; }  // how often that was, for who holds a copy
 
     Ref<Light> read(engine::Recorder& recorder) const { return recorder.read(lights_); }
 
@@ -36,8 +46,10 @@ public:
 private:
     LightTable(engine::Device& device, LightData data);
 
+    engine::Device& device_;
     LightData data_;
     engine::Array<Light> lights_;
+    uint32_t moves_ = 0;
 };
 
 }  // namespace myriad::passes

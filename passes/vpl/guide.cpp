@@ -39,11 +39,17 @@ std::vector<PilotTally> run_pilot(engine::Recorder& recorder, const Geometry& ge
     return engine::download(device, tallies);
 }
 
+std::vector<double> shares(const LightData& lights, const GuideData& guide) {
+    std::vector<double> shares = lights.powers;
+    for (size_t i = 0; i < shares.size(); ++i) shares[i] *= guide.worth[i];
+    return shares;
+}
+
 }  // namespace
 
 GuideData guide_data(const LightData& lights, std::span<const PilotTally> tallies, uint32_t samples) {
-    GuideData guide{lights.lights, {}};
-    std::vector<double> shares = lights.powers, cells(guide_cells);
+    GuideData guide{lights.lights, {}, std::vector<double>(lights.lights.size(), 1.0)};
+    std::vector<double> cells(guide_cells);
     for (uint32_t light = 0; light < lights.punctual; ++light) {
         const std::span<const PilotTally> own = tallies.subspan(size_t(light) * guide_cells, guide_cells);
         double mean = 0;
@@ -51,21 +57,28 @@ GuideData guide_data(const LightData& lights, std::span<const PilotTally> tallie
         // A cell counts with one path of the mean besides its own, since few paths may all have been lucky, or unlucky.
         double sum = 0;
         for (uint32_t i = 0; i < guide_cells; ++i) sum += cells[i] = std::lerp(guide_floor, 1.0, (own[i].second + mean) / (samples + 1.0));
-        shares[light] *= sum / guide_cells;
+        guide.worth[light] = sum / guide_cells;
 
         std::vector<double> columns(guide_side);
         for (uint32_t i = 0; i < guide_cells; ++i) columns[i / guide_side] += cells[i];
         append_ends(guide.cells, columns);
         for (uint32_t c = 0; c < guide_side; ++c) append_ends(guide.cells, std::span(cells).subspan(c * guide_side, guide_side));
     }
-    share_out(guide.lights, shares);
+    share_out(guide.lights, shares(lights, guide));
     return guide;
 }
 
 EmissionGuide::EmissionGuide(engine::Recorder& recorder, const Geometry& geometry, const compute::Bvh& bvh, const LightTable& lights,
                              uint32_t seed, const engine::Constants& variant)
-    : data_(guide_data(lights.data(), run_pilot(recorder, geometry, bvh, lights, seed, variant), samples_a_cell(lights.punctual()))),
-      lights_(engine::upload(recorder.device(), "vpls", "guided lights", data_.lights)),
+    : device_(recorder.device()), data_(guide_data(lights.data(), run_pilot(recorder, geometry, bvh, lights, seed, variant), samples_a_cell(lights.punctual()))),
+      moves_(lights.moves()), lights_(engine::upload(recorder.device(), "vpls", "guided lights", data_.lights)),
       cells_(engine::upload(recorder.device(), "vpls", "guide", data_.cells)) {}
+
+void EmissionGuide::follow(const LightTable& lights) {
+    if (lights.moves() == moves_) return;
+    moves_ = lights.moves();
+    move_lights(data_.lights, std::span(lights.data().lights).first(lights.punctual()), shares(lights.data(), data_));
+    engine::upload_bytes(device_, data_.lights.data(), lights_, lights_.bytes());
+}
 
 }  // namespace myriad::passes

@@ -17,6 +17,7 @@ inline constexpr double guide_floor = 0.05;
 struct GuideData {
     std::vector<Light> lights;  // as in the table, but for `cdf`, which is the guided choice
     std::vector<float> cells;   // guide_floats a punctual light
+    std::vector<double> worth;  // a light: what its power was multiplied by, the mean of its cells
 };
 // `tallies`: guide_cells a punctual light, each of `samples` paths.
 GuideData guide_data(const LightData& lights, std::span<const PilotTally> tallies, uint32_t samples);
@@ -27,12 +28,17 @@ public:
     EmissionGuide(engine::Recorder& recorder, const Geometry& geometry, const compute::Bvh& bvh, const LightTable& lights, uint32_t seed,
                   const engine::Constants& variant = {});
 
+    // Moves lights as the table's have moved. They are guided as before: what the pilot found is a little out of date, but the pattern stays.
+    void follow(const LightTable& lights);
+
     Ref<Light> lights(engine::Recorder& recorder) const { return recorder.read(lights_); }
     Ref<float> cells(engine::Recorder& recorder) const { return recorder.read(cells_); }
     const GuideData& data() const { return data_; }
 
 private:
+    engine::Device& device_;
     GuideData data_;
+    uint32_t moves_;  // of the table, that it has followed
     engine::Array<Light> lights_;
     engine::Array<float> cells_;
 };

@@ -27,8 +27,10 @@ engine::Constants guided(engine::Constants variant) {
 
 VplPass::VplPass(engine::Device& device, uint32_t max_vpls, const engine::Constants& variant)
     : device_(device), variant_(variant), emit_(device, passes_kernels, "vpl/emit", variant),
-      emit_guided_(device, passes_kernels, "vpl/emit", guided(variant)), bounce_(device, passes_kernels, "vpl/bounce", variant), compact_(device, passes_kernels, "vpl/compact"),
-      vpls_(device, "vpls", "VPLs", max_vpls), count_(device, "vpls", "VPL count", 2),
+      emit_guided_(device, passes_kernels, "vpl/emit", guided(variant)), bounce_(device, passes_kernels, "vpl/bounce", variant),
+      ask_(device, passes_kernels, "vpl/ask"), vacate_(device, passes_kernels, "vpl/vacate"), settle_(device, passes_kernels, "vpl/settle"),
+      vpls_(device, "vpls", "VPLs", max_vpls), owners_(device, "vpls", "VPL owners", max_vpls),
+      vacant_(device, "vpls", "VPL places that are vacant", max_vpls), count_(device, "vpls", "VPL count", 4),
       exhausted_(device, "vpls", "VPL paths exhausted", 1), views_(device, "vpls", "VPL views", max_vpls) {
     assert(max_vpls >= 1 && max_vpls <= path_limit);
     make_slots(max_vpls);
@@ -36,11 +38,14 @@ VplPass::VplPass(engine::Device& device, uint32_t max_vpls, const engine::Consta
 
 void VplPass::make_slots(uint64_t slots) {
     if (slots <= slots_.count()) return;
-    slots_ = {}, alive_ = {}, scan_.reset();  // first, so that memory need not hold both
+    slots_ = {}, alive_ = {}, flags_ = {}, places_ = {}, scan_.reset();  // first, so that memory need not hold both
     slots_ = {device_, "vpls", "VPL slots", slots};
-    alive_ = {device_, "vpls", "VPL slots alive", slots + 1};
-    slot_count_ = engine::upload(device_, "vpls", "VPL slot count", std::vector<uint>{uint(slots)});
-    scan_.emplace(device_, slots);
+    alive_ = {device_, "vpls", "VPL slots alive", slots};
+    flags_ = {device_, "vpls", "VPL slots without place", 2 * slots + 1};
+    places_ = {device_, "vpls", "VPL places", slots};
+    flag_count_ = engine::upload(device_, "vpls", "VPL flag count", std::vector<uint>{uint(2 * slots)});
+    scan_.emplace(device_, 2 * slots);
+    pattern_ = {};
 }
 
 uint32_t VplPass::sure_paths(const LightTable& lights, uint32_t bounces) const {
@@ -69,7 +74,8 @@ void VplPass::prepare(engine::Recorder& recorder, const Geometry& geometry, cons
             record_paths(recorder, geometry, bvh, lights, bounces, with_seed, paths_);
         }
         recorder.submit_and_wait();
-        return engine::download(device_, count_)[1];
+        const std::vector<uint> count = engine::download(device_, count_);
+        return count[1] + count[2];
     };
     const auto scaled = [&](uint32_t found) { return uint64_t(fill * double(paths_) * max_vpls() / std::max(found, 1u)); };
     const uint64_t most = std::min<uint64_t>({most_paths * max_vpls(), most_slots * max_vpls() / vpls_a_path(lights, bounces), path_limit});
@@ -79,11 +85,13 @@ void VplPass::prepare(engine::Recorder& recorder, const Geometry& geometry, cons
         if (found <= max_vpls()) break;
         paths_ = uint32_t(std::clamp<uint64_t>(scaled(found), sure, paths_ - 1));
     }
+    pattern_ = {};  // trials leave no traces
 }
 
 void VplPass::record(engine::Recorder& recorder, const Geometry& geometry, const compute::Bvh& bvh, const LightTable& lights,
                      uint32_t bounces, uint32_t seed) {
     assert(!guide_ || (bounces == bounces_ && seed == seed_));
+    if (guide_) guide_->follow(lights);
     record_paths(recorder, geometry, bvh, lights, bounces, seed, guide_ ? paths_ : sure_paths(lights, bounces));
 }
 
@@ -93,10 +101,11 @@ void VplPass::record_paths(engine::Recorder& recorder, const Geometry& geometry,
     const uint32_t layers = vpls_a_path(lights, bounces);
     const uint32_t first_hits = lights.has_emissive();  // the layer above the emitters' own, if they have one
     recorder.fill(exhausted_, 0);
-    if (paths == 0) {
-        recorder.fill(count_, 0);
-        return;
+    if (const std::array<uint32_t, 4> pattern{paths, bounces, layers, seed}; paths == 0 || pattern != pattern_) {
+        forget_places(recorder);
+        pattern_ = pattern;
     }
+    if (paths == 0) return;
     const auto on_layer = [&](uint32_t layer) {
         return VplPaths{.geometry = geometry.read(recorder), .bvh = bvh.read(recorder), .slots = recorder.write(slots_),
                         .alive = recorder.write(alive_), .exhausted = recorder.write(exhausted_), .paths = paths,
@@ -109,12 +118,23 @@ void VplPass::record_paths(engine::Recorder& recorder, const Geometry& geometry,
                       paths);
     for (uint32_t layer = 1; layer < layers; ++layer) recorder.dispatch(bounce_, VplBouncePush{.on = on_layer(layer)}, paths);
 
-    scan_->record(recorder, alive_, slot_count_);
-    recorder.dispatch(compact_,
-                      VplCompactPush{.slots = recorder.read(slots_), .offsets = recorder.read(alive_), .vpls = recorder.write(vpls_),
-                                     .views = recorder.write(views_), .count = recorder.write(count_),
-                                     .slot_count = uint(slots_.count()), .max_vpls = max_vpls()},
-                      slots_.count());
+    const auto places = [&] {
+        return VplPlacesPush{.slots = recorder.read(slots_), .alive = recorder.read(alive_), .flags = recorder.write(flags_),
+                             .places = recorder.write(places_), .owners = recorder.write(owners_), .vacant = recorder.write(vacant_),
+                             .vpls = recorder.write(vpls_), .views = recorder.write(views_), .count = recorder.write(count_),
+                             .slot_count = uint(slots_.count()), .max_vpls = max_vpls()};
+    };
+    recorder.dispatch(ask_, places(), slots_.count());
+    scan_->record(recorder, flags_, flag_count_);
+    recorder.dispatch(vacate_, places(), slots_.count());
+    recorder.dispatch(settle_, places(), slots_.count());
+}
+
+// Then the living get places in the order of slots.
+void VplPass::forget_places(engine::Recorder& recorder) {
+    recorder.fill(places_, 0);
+    recorder.fill(owners_, vpl_nobody);
+    recorder.fill(count_, 0);
 }
 
 }  // namespace myriad::passes

@@ -1,6 +1,7 @@
 // Virtual point lights of all kinds of lights, and a view for each; see README.md.
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "compute/raytrace/bvh.hpp"
@@ -28,17 +29,25 @@ public:
     void prepare(engine::Recorder& recorder, const Geometry& geometry, const compute::Bvh& bvh, const LightTable& lights,
                  uint32_t bounces, uint32_t seed);
 
-    // `bounces`: reflections a path makes, at most vpl_max_bounces. The pattern depends on `seed` and on what was prepared.
+    // `bounces`: reflections a path makes, at most vpl_max_bounces. The pattern depends on `seed` and on what was prepared, so each VPL
+    // is the same vertex of the same path in all frames, wherever lights and surfaces have moved.
     // Prepared: with the same arguments, and where the scene has moved since, perhaps more VPLs than fit (see count).
     // Not prepared: by power alone, sure_paths of them.
     void record(engine::Recorder& recorder, const Geometry& geometry, const compute::Bvh& bvh, const LightTable& lights,
                 uint32_t bounces, uint32_t seed);
 
-    // The first count()[0] elements; the rest is undefined.
+    // The first count()[0] elements; the rest is undefined. An element is the same VPL frame after frame. One that is dead, since its
+    // path goes another way now, has no flux, and its view sees nothing (vpl_of_nothing); a newborn one may take its place for good.
     const engine::Array<Vpl>& vpls() const { return vpls_; }
     const engine::Array<View>& views() const { return views_; }
-    // [1]: how many there would be with room for all. Where that is more, the scene changed, and prepare() is due again.
+    // [0]: elements; [1]: of which alive; [2]: VPLs for which there was no room. Where that is not 0, the scene changed, and prepare()
+    // is due again.
     const engine::Array<uint>& count() const { return count_; }
+    // By element, dead or alive: which path's which vertex it is, an index of the two below.
+    const engine::Array<uint>& owners() const { return owners_; }
+    // The last frame's paths (VplPaths): VPLs, and whether there is one.
+    const engine::Array<Vpl>& slots() const { return slots_; }
+    const engine::Array<uint>& alive() const { return alive_; }
     // [0] != 0: a ray's walk met the device's limit on loops (trace.glsl), and the result cannot be trusted.
     const engine::Array<uint>& exhausted() const { return exhausted_; }
     uint32_t max_vpls() const { return uint32_t(vpls_.count()); }
@@ -47,16 +56,18 @@ public:
 
 private:
     void make_slots(uint64_t slots);
+    void forget_places(engine::Recorder& recorder);
     void record_paths(engine::Recorder& recorder, const Geometry& geometry, const compute::Bvh& bvh, const LightTable& lights,
                       uint32_t bounces, uint32_t seed, uint32_t paths);
 
     engine::Device& device_;
     engine::Constants variant_;
-    engine::Program emit_, emit_guided_, bounce_, compact_;
+    engine::Program emit_, emit_guided_, bounce_, ask_, vacate_, settle_;
     engine::Array<Vpl> slots_, vpls_;
-    engine::Array<uint> alive_, slot_count_, count_, exhausted_;
+    engine::Array<uint> alive_, flags_, flag_count_, places_, owners_, vacant_, count_, exhausted_;
     engine::Array<View> views_;
     std::optional<compute::Scan> scan_;
+    std::array<uint32_t, 4> pattern_{};  // what slots mean: while it stays, VPLs keep their places
     // Prepared.
     std::optional<EmissionGuide> guide_;
     uint32_t paths_ = 0, bounces_ = 0, seed_ = 0;

@@ -72,13 +72,29 @@ struct VplBouncePush {
     VplPaths on;
 };
 
-// "vpl/compact": moves what is alive to the front, in the order of slots, as far as there is room, and makes each VPL's view.
-struct VplCompactPush {
+// A VPL that has died, until another takes its place: it brings no light, faces no receiver, and its view sees nothing.
+MYRIAD_FN Vpl vpl_of_nothing() {
+    Vpl vpl;
+    vpl.position = view_of_nothing().position;
+    vpl.normal = pack_direction(view_of_nothing().direction);
+    vpl.flux = vec3(0.0f);
+    vpl.bounce = 0u;
+    return vpl;
+}
+
+// "vpl/ask", "vpl/vacate", "vpl/settle": which place each VPL has, so that it has the same one in every frame. The *owner* of a
+// place is a slot; it owns the place alive or dead, until one that has none takes a dead one's.
+const uint vpl_nobody = 0xffffffffu;
+struct VplPlacesPush {
     Vpls slots;
-    Uints offsets;       // `alive` after the scan: a slot is alive where the next offset differs
-    Vpls vpls;
-    Views views;
-    Uints count;         // VPLs kept; VPLs alive
+    Uints alive;         // by slot
+    Uints flags;         // two a slot, and the sum after the scan: all who are alive and own no place, then all who are dead and own one
+    Uints places;        // by slot: its place, if the place's owner says so
+    Uints owners;        // by place
+    Uints vacant;        // places whose owner is dead, in the order of slots
+    Vpls vpls;           // by place
+    Views views;         // by place
+    Uints count;         // VplPass::count, then count[0] of the frame before
     uint slot_count;
     uint max_vpls;
 };
@@ -86,6 +102,7 @@ MYRIAD_END
 
 #ifdef __cplusplus
 static_assert(sizeof(myriad::Vpl) == 32 && sizeof(myriad::VplPaths) % 8 == 0 && sizeof(myriad::VplEmitPush) <= 128);
+static_assert(sizeof(myriad::VplPlacesPush) <= 128);
 #endif
 
 #endif

@@ -1,6 +1,7 @@
 #include "passes/vpl/vpl_ref.hpp"
 
 #include <bit>
+#include <map>
 #include <numbers>
 
 #include "passes/geometry/geometry_ref.hpp"
@@ -85,6 +86,33 @@ std::vector<Vpl> vpl_ref(const scenes::Scene& scene, const scenes::Triangles& tr
     std::vector<Vpl> vpls;
     for (const auto& layer : by_layer) vpls.insert(vpls.end(), layer.begin(), layer.end());
     return vpls;
+}
+
+void PlacesRef::step(const std::vector<uint32_t>& living) {
+    std::map<uint32_t, uint32_t> dead;  // slot to place
+    for (uint32_t place = 0; place < owners.size(); ++place) dead[owners[place]] = place;
+    alive.assign(owners.size(), false);
+    std::vector<uint32_t> asking;
+    for (uint32_t slot : living) {
+        const auto own = dead.find(slot);
+        if (own == dead.end()) {
+            asking.push_back(slot);
+            continue;
+        }
+        alive[own->second] = true;
+        dead.erase(own);
+    }
+    homeless = 0;
+    for (uint32_t slot : asking) {
+        if (!dead.empty()) {
+            owners[dead.begin()->second] = slot, alive[dead.begin()->second] = true;
+            dead.erase(dead.begin());
+        } else if (owners.size() < max_vpls) {
+            owners.push_back(slot), alive.push_back(true);
+        } else {
+            ++homeless;
+        }
+    }
 }
 
 }  // namespace myriad::passes

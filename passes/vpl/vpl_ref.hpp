@@ -14,4 +14,14 @@ struct GuidedPlace {
     double density;
 };
 GuidedPlace guided_place_ref(const GuideData& guide, uint32_t light, const vec2& x);
+
+// Who has which place, frame after frame.
+struct PlacesRef {
+    uint32_t max_vpls;
+    std::vector<uint32_t> owners = {};  // slots, by place
+    std::vector<bool> alive = {};       // by place
+    size_t homeless = 0;
+
+    void step(const std::vector<uint32_t>& living);  // slots, ascending
+};
 }  // namespace myriad::passes
