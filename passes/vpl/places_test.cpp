@@ -91,7 +91,7 @@ TEST_F(PlacesTest, equal_the_twin_over_many_frames) {
                 lived = twin.alive;
                 homeless += twin.homeless;
             }
-            EXPECT_GT(handed_on, 100u);
+            EXPECT_GT(handed_on, 50u);
             EXPECT_TRUE(prepared_for_less || std::min(died, revived) > 100) << died << " " << revived;
             EXPECT_EQ(homeless > 0, prepared_for_less);
         }
