@@ -28,7 +28,13 @@ double total_area(const compute::WorldTriangles& world) {
 }
 
 GatherVisibility gather_visibility(Visibility v) {
-    return v == Visibility::manylods ? GatherVisibility::maps : v == Visibility::rays ? GatherVisibility::rays : GatherVisibility::none;
+    return v == Visibility::rays ? GatherVisibility::rays : v == Visibility::none ? GatherVisibility::none : GatherVisibility::maps;
+}
+
+MapSettings map_settings(const FrameSettings& settings) {
+    MapSettings maps = settings.maps;
+    maps.method = settings.visibility == Visibility::brute ? MapMethod::brute : MapMethod::manylods;
+    return maps;
 }
 
 }  // namespace
@@ -88,11 +94,13 @@ void Frame::make_indirect(compute::Derived& derived) {
     vpl_->sure_paths(lights_, settings.bounces);  // throws when not one path fits
     gather_.emplace(device_, gather_visibility(settings.visibility), settings.width, settings.height, bvh_.constants());
     if (settings.filter && block_ > 1) filter_.emplace(device_, settings.width, settings.height);
-    if (settings.visibility != Visibility::manylods) return;
-    tree_.emplace(step("sampling the surface", [&] { return derived.bsh(device_, settings.log2_samples, settings.seed); }));
-    size_.samples = tree_->leaves();
-    size_.bsh_blocks = tree_->blocks();
-    maps_.emplace(device_, settings.maps, settings.vpls, block_ * block_);
+    if (settings.visibility == Visibility::manylods) {
+        tree_.emplace(step("sampling the surface", [&] { return derived.bsh(device_, settings.log2_samples, settings.seed); }));
+        size_.samples = tree_->leaves();
+        size_.bsh_blocks = tree_->blocks();
+    }
+    if (gather_visibility(settings.visibility) == GatherVisibility::maps)
+        maps_.emplace(device_, map_settings(settings), settings.vpls, block_ * block_, &derived.world());
 }
 
 void Frame::report(const std::string& stage, double done) const {
@@ -123,6 +131,7 @@ void Frame::render(const scenes::Camera& camera) {
     read_back_words();
     if (vpl_) counters_.vpls = host_words_.span()[0];
     if (maps_) counters_.maps = maps_->take_counters();
+    if (settings_.visibility == Visibility::brute && vpl_) counters_.maps->triangle_views = size_.triangles * *counters_.vpls;
     times_ = recorder_.take_times();
     report("done", 1);
 }
@@ -151,14 +160,14 @@ void Frame::gather_indirect(float pixel_angle) {
     recorder_.fill(exhausted_, 0);
     for (uint32_t first = 0; first < views;) {
         const uint32_t batch = maps_ ? maps_->batch() : gather_->max_vpls(block_);
-        if (maps_) maps_->record(recorder_, *tree_, vpl_->views(), vpl_->count(), first);
+        if (maps_) maps_->record(recorder_, {.tree = tree(), .geometry = &geometry_}, vpl_->views(), vpl_->count(), first);
         {
             auto scope = recorder_.scope("gather");
             if (settings_.visibility == Visibility::rays)
                 gather_->record_rays(recorder_, in, first, batch, bvh_, reach_, exhausted_);
             else
                 gather_->record_maps(recorder_, in, first, batch, maps_ ? &maps_->atlas() : nullptr, settings_.maps.map_size, settings_.bias,
-                                     maps_ ? &maps_->lists() : nullptr);
+                                     maps_ ? maps_->lists() : nullptr);
         }
         recorder_.submit_and_wait();  // a batch a submission: progress, and no time-out on devices that watch
         if (!maps_ || maps_->accept()) first += batch;  // else the same again, with longer lists or fewer views

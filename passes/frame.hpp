@@ -23,6 +23,7 @@ namespace myriad::passes {
 
 enum class Visibility {
     manylods,  // maps from cuts through the BSH
+    brute,     // maps of all triangles
     rays,      // exact: the same-VPL reference
     none,      // every VPL reaches every receiver
 };
@@ -58,7 +59,7 @@ struct BuildStep {
 
 struct FrameCounters {
     std::optional<uint64_t> vpls;       // alive
-    std::optional<MapCounters> maps;    // visibility manylods
+    std::optional<MapCounters> maps;    // visibility by maps
 };
 
 class Frame {

@@ -61,10 +61,10 @@ protected:
         return ::testing::AssertionSuccess();
     }
 
-    // Finite by all three kinds of visibility. Returns the images: maps, rays, none.
+    // Finite by all kinds of visibility. Returns the images: maps, rays, none, maps of all triangles.
     std::vector<Image> all(const Kit& kit) {
         std::vector<Image> images;
-        for (Visibility v : {Visibility::manylods, Visibility::rays, Visibility::none}) {
+        for (Visibility v : {Visibility::manylods, Visibility::rays, Visibility::none, Visibility::brute}) {
             SCOPED_TRACE(testing::Message() << "visibility " << int(v));
             images.push_back(render(kit, small(v)));
             expect_finite(images.back());
@@ -77,6 +77,7 @@ protected:
         EXPECT_GT(rays, 0);
         EXPECT_GE(none, rays * 0.999);
         EXPECT_NEAR(maps / rays, 1, tolerance) << "maps " << maps << ", rays " << rays << ", none " << none;
+        EXPECT_NEAR(mean(images[3], "indirect") / rays, 1, tolerance) << "maps of all triangles";
         EXPECT_LT(std::abs(maps - rays), std::max(none - rays, 0.1 * rays)) << "maps must be worth more than no visibility";
     }
 

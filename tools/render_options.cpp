@@ -46,7 +46,7 @@ void add_outputs(CLI::App& command, RenderOptions& o) {
 
 void add_technique(CLI::App& command, passes::FrameSettings& s) {
     add_choice(command, "--visibility", s.visibility, visibilities(),
-               "whether a VPL sees a pixel: by its map, drawn from its cut through the scene;\nby exact rays, the reference; or taken for granted");
+               "whether a VPL sees a pixel: by its map, drawn from its cut through the scene\n(manylods) or of all triangles (brute); by exact rays, the reference; or taken for granted");
     add_whole(command, "--vpls", s.vpls, 0, 1u << 24, "virtual point lights at most; 0: no indirect light");
     add_whole(command, "--bounces", s.bounces, 0, 64, "diffuse reflections of light before what the camera sees");
     add_parsed(command, "--gather", "all|subset:K", show_gather(s.subset), "VPLs that each pixel gathers: all, or about K, a different subset\n"
@@ -72,7 +72,7 @@ const char* const footer =
 
 const Choices<passes::Visibility>& visibilities() {
     using passes::Visibility;
-    static const Choices<Visibility> choices = {{"manylods", Visibility::manylods}, {"rays", Visibility::rays}, {"none", Visibility::none}};
+    static const Choices<Visibility> choices = {{"manylods", Visibility::manylods}, {"brute", Visibility::brute}, {"rays", Visibility::rays}, {"none", Visibility::none}};
     return choices;
 }
 

@@ -40,11 +40,14 @@ ordered_json counters_json(const FrameRun& frame) {
     ordered_json counters = ordered_json::object();
     if (frame.counters.vpls) counters["vpls"] = *frame.counters.vpls;
     if (const auto& maps = frame.counters.maps) {
-        counters["node_views"] = maps->node_views;
-        counters["cut"] = maps->cut;
-        counters["cut_groups"] = maps->groups;
-        counters["list_capacity"] = maps->list_capacity;
-        counters["list_peak"] = maps->list_peak;
+        if (maps->list_capacity) {
+            counters["node_views"] = maps->node_views;
+            counters["cut"] = maps->cut;
+            counters["cut_groups"] = maps->groups;
+            counters["list_capacity"] = maps->list_capacity;
+            counters["list_peak"] = maps->list_peak;
+        }
+        if (maps->triangle_views) counters["triangle_views"] = maps->triangle_views;
         counters["batches"] = maps->batches;
         counters["redone"] = maps->redone;
     }
@@ -67,7 +70,9 @@ double mebibytes(uint64_t bytes) { return double(bytes) / (1 << 20); }
 std::string counters_text(const FrameRun& frame) {
     std::string text;
     if (frame.counters.vpls) text += format("%llu VPLs alive", static_cast<unsigned long long>(*frame.counters.vpls));
-    if (const auto& maps = frame.counters.maps)
+    const auto& maps = frame.counters.maps;
+    if (maps && maps->triangle_views) text += format(", %llu triangles drawn in views, %u batches", static_cast<unsigned long long>(maps->triangle_views), maps->batches);
+    if (maps && maps->list_capacity)
         text += format(", %llu node-views tested, %llu in the cuts, lists %llu of %llu, %u batches, %u redone",
                        static_cast<unsigned long long>(maps->node_views), static_cast<unsigned long long>(maps->cut),
                        static_cast<unsigned long long>(maps->list_peak), static_cast<unsigned long long>(maps->list_capacity), maps->batches,
@@ -120,12 +125,13 @@ ordered_json settings_json(const passes::FrameSettings& s, float vpl_bound) {
     json["gather"] = show_gather(s.subset);
     json["filter"] = s.filter;
     json["vpl_bound"] = shortest(vpl_bound);
+    if (s.visibility == passes::Visibility::rays || s.visibility == passes::Visibility::none) return json;
+    json["map_size"] = s.maps.map_size;
+    json["bias"] = shortest(s.bias);
     if (s.visibility != passes::Visibility::manylods) return json;
     json["append"] = choice_name(append_modes(), s.maps.append);
-    json["map_size"] = s.maps.map_size;
     json["epsilon"] = shortest(s.maps.epsilon);
     json["log2_samples"] = s.log2_samples;
-    json["bias"] = shortest(s.bias);
     return json;
 }
 

@@ -37,12 +37,27 @@ struct BruteTriangle {
     vec3 d0, d1, d2;  // corners - view
 };
 
-// Whether no point of the triangle lies in the view's frustum. For half-spaces, a VPL's, without slack; else by the sphere around it.
-MYRIAD_FN bool brute_outside(View view, BruteTriangle t) {
-    if (view.cos_phi == 0.0f) return max(dot(view.direction, t.d0), max(dot(view.direction, t.d1), dot(view.direction, t.d2))) < 0.0f;
-    const vec3 middle = (t.d0 + t.d1 + t.d2) / 3.0f;
-    const vec3 a = t.d0 - middle, b = t.d1 - middle, c = t.d2 - middle;
-    return outside_frustum(view, middle, sqrt(max(dot(a, a), max(dot(b, b), dot(c, c)))) * 1.00001f);
+MYRIAD_FN BruteTriangle brute_around(vec3 view, Corners p) {
+    BruteTriangle t;
+    t.d0 = p.p0 - view;
+    t.d1 = p.p1 - view;
+    t.d2 = p.p2 - view;
+    return t;
+}
+
+// A sphere around the triangle: the first question that is asked of it in each view.
+MYRIAD_FN Sphere brute_sphere(Corners p) {
+    Sphere s;
+    s.center = (p.p0 + p.p1 + p.p2) / 3.0f;
+    const vec3 a = p.p0 - s.center, b = p.p1 - s.center, c = p.p2 - s.center;
+    s.radius = sqrt(max(dot(a, a), max(dot(b, b), dot(c, c)))) * 1.00001f;
+    return s;
+}
+
+// Whether no point of the triangle lies in the view's frustum. For half-spaces, a VPL's, without slack; else by the sphere.
+MYRIAD_FN bool brute_outside(View view, BruteTriangle t, Sphere s) {
+    if (view.cos_phi != 0.0f) return outside_frustum(view, s.center - view.position, s.radius);
+    return max(dot(view.direction, t.d0), max(dot(view.direction, t.d1), dot(view.direction, t.d2))) < 0.0f;
 }
 
 // ---- What is covered ----
@@ -106,10 +121,26 @@ MYRIAD_FN BruteHit brute_hit(BruteTriangle t, BruteEdges e, uint half_index, vec
 
 // ---- A bound of it ----
 
+// Whether a sphere at d may reach texels of the half where its centre is not: directions up to the rim, a cone around that half's axis.
+MYRIAD_FN bool brute_in_both(vec3 d, float r, uint size) {
+    const float t = brute_rim(size), scale = 1.0f / (t * t + 1.0f);  // the tangent of half the cone's angle
+    return abs(d.x) * (2.0f * t * scale) <= r + (t * t - 1.0f) * scale * 1.00001f * sqrt(dot(d, d));
+}
+
+// Whether a sphere's footprint, a disc, holds the middle of no texel: so it is with most triangles, which are smaller than a texel.
+MYRIAD_FN bool brute_misses(uint half_index, vec3 d, float r, uint size) {
+    const Footprint f = footprint(half_index, d, r);
+    if (f.whole) return false;
+    const float scale = 0.5f * float(size), least = f.radius * 1.00001f + 4e-6f;
+    const vec2 middle = (f.center + vec2(1.0f, 1.0f)) * scale - vec2(0.5f, 0.5f);
+    const vec2 first = max(ceil(middle - least * scale), vec2(0.0f, 0.0f));
+    const vec2 last = min(floor(middle + least * scale), vec2(float(size) - 1.0f, float(size) - 1.0f));
+    return first.x > last.x || first.y > last.y;
+}
+
 struct BruteBounds {
     vec2 low, high;  // in (u, v) of one half
     bool wide;       // brute_wide_bounds is to be asked instead
-    bool other;      // the triangle may cover texels of the other half, too
 };
 
 // Chords up to this are short: the shorter of the two arcs over one is that between the corners (it is at most pi/2 times as long, and
@@ -124,18 +155,18 @@ MYRIAD_FN vec2 brute_project(float s, vec3 d) {
     return vec2(d.y * scale, d.z * scale);
 }
 
-MYRIAD_FN BruteBounds brute_bounds(uint half_index, BruteTriangle t, uint size) {
+MYRIAD_FN BruteBounds brute_bounds(uint half_index, BruteTriangle t) {
     const float s = half_index == half_front ? 1.0f : -1.0f;
     const vec2 a = brute_project(s, t.d0), b = brute_project(s, t.d1), c = brute_project(s, t.d2);
     const vec2 ab = b - a, bc = c - b, ca = a - c;
+    const float most2 = brute_short * brute_short;
     const float chord2 = max(dot(ab, ab), max(dot(bc, bc), dot(ca, ca)));
     const float rise = chord2 / 7.0f + brute_slack;  // at least 1 - sqrt(1 - c^2 / 4) up to chords of 0.95
     BruteBounds bounds;
     bounds.low = min(a, min(b, c)) - rise;
     bounds.high = max(a, max(b, c)) + rise;
-    bounds.wide = !(chord2 <= brute_short * brute_short);
-    const float most = 1.0f / brute_rim(size) - rise;
-    bounds.other = bounds.wide || max(dot(a, a), max(dot(b, b), dot(c, c))) >= most * most;
+    // One by one: a corner may be at no number.
+    bounds.wide = !(dot(ab, ab) <= most2 && dot(bc, bc) <= most2 && dot(ca, ca) <= most2);
     return bounds;
 }
 
@@ -178,14 +209,16 @@ MYRIAD_FN BruteBounds brute_wide_bounds(uint half_index, BruteTriangle t, BruteE
     const bool meets_axis = min(e.n0.x, min(e.n1.x, e.n2.x)) >= 0.0f || max(e.n0.x, max(e.n1.x, e.n2.x)) <= 0.0f;
     const bool opposite = meets_axis && !(s * e.height * e.normal.x > 0.0f);
     const bool finite = dot(a, a) < 1e12f && dot(b, b) < 1e12f && dot(c, c) < 1e12f;
-    // Nearly half a circle has no plane to speak of: the view is on the edge.
+    // Nearly half a circle has no plane to speak of: the view is on the edge. And brute_edges of a corner this near are rounded by more
+    // than what was added.
     const bool on_edge = min(dot(p, q), min(dot(q, r), dot(r, p))) < -0.999f;
-    if (opposite || on_edge || !finite) {
+    const vec3 l2 = vec3(dot(t.d0, t.d0), dot(t.d1, t.d1), dot(t.d2, t.d2));
+    const bool in_corner = !(min(l2.x, min(l2.y, l2.z)) > 1e-6f * max(l2.x, max(l2.y, l2.z)));
+    if (opposite || on_edge || in_corner || !finite) {
         bounds.low = vec2(-2.0f, -2.0f);
         bounds.high = vec2(2.0f, 2.0f);
     }
     bounds.wide = true;
-    bounds.other = true;
     return bounds;
 }
 

@@ -5,10 +5,10 @@ namespace myriad::passes {
 std::vector<uint> brute_ref(const compute::WorldTriangles& world, std::span<const View> views, uint first, uint maps, uint map_size) {
     std::vector<uint> atlas(size_t(maps) * map_texels(map_size), atlas_nothing);
     world.for_each([&](uint32_t id, uint32_t, const Corners& p) {
+        const Sphere sphere = brute_sphere(p);
         for (uint v = first; v < first + maps && v < views.size(); ++v) {
-            const vec3& from = views[v].position;
-            const BruteTriangle t{p.p0 - from, p.p1 - from, p.p2 - from};
-            if (brute_outside(views[v], t)) continue;
+            const BruteTriangle t = brute_around(views[v].position, p);
+            if (brute_outside(views[v], t, sphere)) continue;
             const BruteEdges e = brute_edges(p, t);
             for (uint half : {half_front, half_back})
                 for (uint y = 0; y < map_size; ++y)

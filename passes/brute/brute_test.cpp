@@ -288,7 +288,7 @@ TEST_F(BruteRaysTest, straight_edges_would_be_wrong) {
             const float depth = uintBitsToFloat(exact[i]);
             wrong += (depth < 1e30f) != (classic[i] < 1e30f) || (depth < 1e30f && std::abs(depth - classic[i]) > 0.01f * depth);
         }
-        RecordProperty("texels_wrong_" + std::to_string(cells), int(wrong));
+        RecordProperty("texels_wrong_" + std::to_string(cells), std::to_string(wrong) + " of " + std::to_string(d.seen));
         EXPECT_GT(double(wrong), least * double(d.seen)) << cells << " cells: " << wrong << " of " << d.seen;
     }
 }

@@ -14,19 +14,30 @@ uint64_t atlas_words(uint32_t views, uint32_t map_size) { return uint64_t(views)
 
 }  // namespace
 
-ViewMaps::ViewMaps(engine::Device& device, const MapSettings& settings, uint32_t max_views, uint32_t multiple)
-    : device_(device), settings_(settings), batch_(round_up(std::max(max_views, 1u), multiple)), multiple_(multiple), manylods_(device),
-      splat_(device) {
-    splat_.check_map_size(settings.map_size);
-    // Batches as small as still keep a device busy: lists of some 64 MiB, and maps that stay in caches. An atlas may take half of what
-    // memory is left, and an index into it has 32 bits.
-    while (batch_ > multiple_ && (groups_guess(batch_) > 1 << 23 || atlas_words(batch_, settings.map_size) >> 32 ||
-                                  atlas_words(batch_, settings.map_size) * sizeof(uint) > device_.memory_free() / 2))
-        halve();
+ViewMaps::ViewMaps(engine::Device& device, const MapSettings& settings, uint32_t max_views, uint32_t multiple, const compute::WorldTriangles* world)
+    : device_(device), settings_(settings), batch_(round_up(std::max(max_views, 1u), multiple)), multiple_(multiple) {
+    SplatPass::check_map_size(device, settings.map_size);
+    while (batch_ > multiple_ && !is_handy(batch_)) halve();
     make_atlas();
-    const uint64_t affordable = device_.memory_free() / 2 / (4 * sizeof(uvec2));
-    const uint64_t kept = std::min({groups_guess(batch_), affordable, AppendLists::max_capacity});
-    make_lists(std::max<uint64_t>(kept - kept / 4, batch_), std::max<uint64_t>(kept, 1));
+    switch (settings.method) {
+        case MapMethod::manylods: {
+            manylods_.emplace(device);
+            splat_.emplace(device);
+            const uint64_t affordable = device_.memory_free() / 2 / (4 * sizeof(uvec2));
+            const uint64_t kept = std::min({groups_guess(batch_), affordable, AppendLists::max_capacity});
+            make_lists(std::max<uint64_t>(kept - kept / 4, batch_), std::max<uint64_t>(kept, 1));
+            break;
+        }
+        case MapMethod::brute: brute_.emplace(device, *world); break;
+    }
+}
+
+// Batches as small as still keep a device busy: lists of some 64 MiB, and maps that stay in caches. An atlas may take half of what
+// memory is left, and an index into it has 32 bits.
+bool ViewMaps::is_handy(uint32_t views) const {
+    const uint64_t words = atlas_words(views, settings_.map_size);
+    return words >> 32 == 0 && words * sizeof(uint) <= device_.memory_free() / 2 &&
+           (settings_.method != MapMethod::manylods || groups_guess(views) <= 1 << 23);
 }
 
 // A batch that does not fit is done again with longer lists, so the guess need not be safe. Measured: up to 1.16 groups a texel at an
@@ -48,17 +59,24 @@ void ViewMaps::make_lists(uint64_t next, uint64_t kept) {
     lists_.emplace(device_, settings_.append, next, kept);
 }
 
-void ViewMaps::record(engine::Recorder& recorder, const compute::Bsh& tree, const engine::Array<View>& views, const engine::Array<uint>& count,
+void ViewMaps::record(engine::Recorder& recorder, const MapScene& scene, const engine::Array<View>& views, const engine::Array<uint>& count,
                       uint32_t first) {
+    if (brute_) {
+        auto scope = recorder.scope("brute");
+        brute_->record(recorder, *scene.geometry, views, count, first, batch_, settings_.map_size, atlas_);
+        return;
+    }
+    const compute::Bsh& tree = *scene.tree;
     {
         auto scope = recorder.scope("cut");
-        manylods_.record(recorder, *lists_, {tree, views, count, first, batch_, settings_.epsilon, settings_.map_size});
+        manylods_->record(recorder, *lists_, {tree, views, count, first, batch_, settings_.epsilon, settings_.map_size});
     }
     auto scope = recorder.scope("splat");
-    splat_.record(recorder, {*lists_, tree, views, first, settings_.map_size}, atlas_);
+    splat_->record(recorder, {*lists_, tree, views, first, settings_.map_size}, atlas_);
 }
 
 bool ViewMaps::accept() {
+    if (!lists_) return ++counters_.batches;
     const compute::AppendReport report = lists_->report();
     counters_.list_peak = std::max({counters_.list_peak, report.next_needed, report.kept_needed});
     counters_.list_capacity = std::max(lists_->next_capacity(), lists_->kept_capacity());

@@ -4,14 +4,28 @@
 #include <optional>
 
 #include "compute/manylods/manylods.hpp"
+#include "passes/brute/brute.hpp"
 #include "passes/splat/splat.hpp"
 
 namespace myriad::passes {
+
+// How a batch of maps is drawn.
+enum class MapMethod {
+    manylods,  // each view's cut through the BSH, splatted
+    brute,     // all triangles, rasterised
+};
 
 struct MapSettings {
     compute::AppendMode append = compute::AppendMode::scan;
     uint32_t map_size = 32;   // texels a side of a half map
     float epsilon = 2;        // texels
+    MapMethod method = MapMethod::manylods;
+};
+
+// What is drawn; a method needs but its own.
+struct MapScene {
+    const compute::Bsh* tree = nullptr;   // manylods
+    const Geometry* geometry = nullptr;   // brute
 };
 
 struct MapCounters {
@@ -20,41 +34,47 @@ struct MapCounters {
     uint64_t groups = 0;      // that hold them
     uint64_t list_peak = 0, list_capacity = 0;  // items of the longest list, and what there was room for
     uint32_t batches = 0, redone = 0;
+    uint64_t triangle_views = 0;  // brute: triangles, each in every view
 };
 
 class ViewMaps {
 public:
     // `multiple`: batches start at multiples of this. Throws InputError for a map size that the device cannot draw, OutOfMemory
     // when not even one batch of `multiple` views fits.
-    ViewMaps(engine::Device& device, const MapSettings& settings, uint32_t max_views, uint32_t multiple);
+    // `world`: the triangles, for brute; it need not outlive the call.
+    ViewMaps(engine::Device& device, const MapSettings& settings, uint32_t max_views, uint32_t multiple,
+             const compute::WorldTriangles* world = nullptr);
 
     // How many views go at once; can get smaller when accept() returns false.
     uint32_t batch() const { return batch_; }
 
-    // Cuts and draws views [first, first + batch()) of those that exist.
-    void record(engine::Recorder& recorder, const compute::Bsh& tree, const engine::Array<View>& views, const engine::Array<uint>& count,
+    // Draws views [first, first + batch()) of those that exist.
+    void record(engine::Recorder& recorder, const MapScene& scene, const engine::Array<View>& views, const engine::Array<uint>& count,
                 uint32_t first);
 
     // After the submission: whether the lists sufficed. If not they are longer now, or the batch is smaller, and this batch must be
-    // done again; a gather that was given lists().state() has left it out. Throws OutOfMemory when there is no way left.
+    // done again; a gather that was given lists() has left it out. Throws OutOfMemory when there is no way left.
     bool accept();
 
     const engine::Array<uint>& atlas() const { return atlas_; }
-    const compute::AppendLists& lists() const { return *lists_; }
+    const compute::AppendLists* lists() const { return lists_ ? &*lists_ : nullptr; }  // null: the method has none, nothing overflows
     MapCounters take_counters() { return std::exchange(counters_, {}); }
 
 private:
     void make_lists(uint64_t next, uint64_t kept);
     void make_atlas();
+    bool is_handy(uint32_t views) const;
     void halve();
     uint64_t groups_guess(uint32_t views) const;
 
     engine::Device& device_;
     MapSettings settings_;
     uint32_t batch_, multiple_;
-    compute::ManyLods manylods_;
-    SplatPass splat_;
+    // Of the method, the others do not exist.
+    std::optional<compute::ManyLods> manylods_;
+    std::optional<SplatPass> splat_;
     std::optional<compute::AppendLists> lists_;
+    std::optional<BrutePass> brute_;
     engine::Array<uint> atlas_;
     MapCounters counters_;
 };

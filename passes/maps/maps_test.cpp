@@ -59,9 +59,9 @@ protected:
             for (uint32_t first = 0; first < n;) {
                 EXPECT_EQ(maps.batch() % (block * block), 0u);
                 const uint32_t batch = maps.batch();
-                maps.record(recorder, tree, device_views, count, first);
+                maps.record(recorder, {.tree = &tree}, device_views, count, first);
                 gather.record_maps(recorder, {gbuffer, device_vpls, count, block, 5}, first, batch, &maps.atlas(), settings.map_size, 0.5f,
-                                   &maps.lists());
+                                   maps.lists());
                 recorder.copy(maps.atlas(), all, std::min(batch, n - first) * words * sizeof(uint), 0, first * words * sizeof(uint));
                 recorder.submit_and_wait();
                 if (maps.accept()) first += batch;

@@ -9,14 +9,14 @@ SplatPass::SplatPass(engine::Device& device)
     : device_(device), threads_per_group_(device.loop_limit() == ~0u ? 1 : 8),
       splat_(device, engine::passes_kernels, "splat/splat", {{2, threads_per_group_}}), grid_(device) {}
 
-void SplatPass::check_map_size(uint32_t map_size) const {
-    if (map_size < 2 || map_size > 1024 || map_texels(map_size) > device_.loop_limit() - 1024)
+void SplatPass::check_map_size(const engine::Device& device, uint32_t map_size) {
+    if (map_size < 2 || map_size > 1024 || map_texels(map_size) > device.loop_limit() - 1024)
         throw InputError("--map-size " + std::to_string(map_size) + " is out of range: this device draws maps from 2 to " +
-                         (device_.loop_limit() == ~0u ? "1024" : "176") + " texels a side");
+                         (device.loop_limit() == ~0u ? "1024" : "176") + " texels a side");
 }
 
 void SplatPass::record(engine::Recorder& recorder, const SplatInputs& in, const engine::Array<uint>& atlas) {
-    check_map_size(in.map_size);
+    check_map_size(device_, in.map_size);
     recorder.fill(atlas, atlas_nothing);
     if (in.tree.empty()) return;
     grid_.dispatch(recorder, splat_, in.cut.state(), compute::AppendLists::kept_word, in.cut.kept_capacity(), threads_per_group_, [&] {

@@ -20,7 +20,7 @@ public:
     explicit SplatPass(engine::Device& device);
 
     // Throws InputError when maps of this size cannot be drawn on the device (a driver that limits loops).
-    void check_map_size(uint32_t map_size) const;
+    static void check_map_size(const engine::Device& device, uint32_t map_size);
 
     // Clears `atlas` (map_texels(map_size) words a view, view `first_view` first) and draws the cut into it.
     void record(engine::Recorder& recorder, const SplatInputs& in, const engine::Array<uint>& atlas);

@@ -78,10 +78,10 @@ struct Experiment {
             CutHash hash;
             for (uint32_t first = 0; first < count;) {
                 const uint32_t batch = maps.batch();
-                maps.record(recorder, tree, views, on_device, first);
+                maps.record(recorder, {.tree = &tree}, views, on_device, first);
                 recorder.submit_and_wait();
                 if (!maps.accept()) continue;
-                if (run == 0) hash.add(engine::download(device, maps.lists().kept(), maps.lists().report().kept));
+                if (run == 0) hash.add(engine::download(device, maps.lists()->kept(), maps.lists()->report().kept));
                 first += batch;
             }
             counters = maps.take_counters();
