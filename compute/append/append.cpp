@@ -66,7 +66,7 @@ AppendFinishPush AppendLists::finish_push(engine::Recorder& recorder) {
 }
 
 void AppendLists::begin(engine::Recorder& recorder, const AppendKernel& kernel, const engine::Array<uint>& count, uint32_t first,
-                        uint32_t limit) {
+                        uint32_t limit, uint32_t weight) {
     assert(limit <= next_capacity_ && "the first list is an active list too");
     current_ = 0;
     workgroup_size_ = kernel.atomic().workgroup_size();
@@ -74,6 +74,7 @@ void AppendLists::begin(engine::Recorder& recorder, const AppendKernel& kernel, 
     push.source = recorder.read(count);
     push.first = first;
     push.limit = limit;
+    push.weight = weight;
     recorder.dispatch(begin_, push, 1);
 }
 

@@ -38,8 +38,10 @@ public:
 
     AppendLists(engine::Device& device, AppendMode mode, uint64_t next_capacity, uint64_t kept_capacity);
 
-    // Starts with min(count[0] - first, limit) items for `kernel`. They are only indices: it makes what it reads itself.
-    void begin(engine::Recorder& recorder, const AppendKernel& kernel, const engine::Array<uint>& count, uint32_t first, uint32_t limit);
+    // Starts with min(count[0] - first, limit) items for `kernel`. They are only indices: it makes what it reads itself. `weight`: 0 or 1,
+    // the work that each of them stands for.
+    void begin(engine::Recorder& recorder, const AppendKernel& kernel, const engine::Array<uint>& count, uint32_t first, uint32_t limit,
+               uint32_t weight = 1);
 
     // One step: runs `kernel` over the active list and makes the next list the active one. `push(AppendRef)` returns the
     // kernel's push constants, and is called once a pass; all its reads and writes belong inside. `weight` is the work that
@@ -68,6 +70,8 @@ public:
     const engine::Array<uvec2>& kept() const { return kept_; }
     // The state as words, for kernels that take the number of kept items: word `kept_word`.
     const engine::Array<uint>& state() const { return state_words_; }
+    // For a kernel that keeps its own account of the kept list's places (compute/incremental).
+    AppendStates write_state(engine::Recorder& recorder) const { return {recorder.write(state_words_).address}; }
     static constexpr uint64_t kept_word = offsetof(AppendState, kept) / sizeof(uint);
     static constexpr uint64_t failed_word = offsetof(AppendState, failed) / sizeof(uint);
     static constexpr uint64_t sums_word = offsetof(AppendState, sums) / sizeof(uint);

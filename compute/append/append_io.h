@@ -42,7 +42,7 @@ struct AppendFinishPush {
     uint group_size, workgroup_size;
     uint scan;                // 1 in scan mode
     uint first, limit;
-    uint weight;              // of the next step's items
+    uint weight;              // of the items of the step that follows
 };
 MYRIAD_END
 

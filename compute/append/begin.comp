@@ -14,7 +14,7 @@ void main() {
     s.failed = 0u;
     s.next_needed = 0u;
     s.kept_needed = 0u;
-    s.processed[0] = s.items;
+    s.processed[0] = s.items * push.weight;
     s.processed[1] = 0u;
     s.opened[0] = 0u;
     s.opened[1] = 0u;

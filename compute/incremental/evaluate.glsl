@@ -1,0 +1,39 @@
+// One block in one view, with its slack: what "update" and "open" share.
+#include "compute/append/append.glsl"
+#include "compute/incremental/incremental_io.h"
+layout(push_constant, scalar) uniform Push { CarryPush push; };
+
+struct Evaluation {
+    uint found;    // drawn | culled << 8 | open << 16, as classify_child
+    bool open;     // whether the block's owner is open; false: the block must go
+    float slack, reach;
+};
+
+void look(inout Evaluation e, View view, vec3 d, float r, uint height, uint where) {
+    const float length = sqrt(dot(d, d));
+    e.slack = min(e.slack, node_slack(view, d, length, r, height, where, float(push.map_size) / push.epsilon));
+    e.reach = max(e.reach, length);
+}
+
+Evaluation evaluate(uint block, View view) {
+    Evaluation e = Evaluation(0u, true, 1e30f, 0.0f);
+    const uint height = bsh_height(8u * block, push.leaves, push.blocks);
+    if (block != push.blocks) {  // the owner, which sits in the block above
+        const uint owner = block + 1u == push.blocks ? 8u * push.blocks : block + push.leaves;
+        const Sphere s = bsh_decode(push.frames.at[owner >> 3], push.spheres.at[owner]);
+        const uint where = classify(view, s, height + 1u, push.epsilon, push.map_size);
+        look(e, view, s.center - view.position, s.radius, height + 1u, where);
+        e.open = where == node_view_open;
+    }
+    if (!e.open) return e;
+    const vec4 frame = push.frames.at[block];
+    for (uint i = 0u; i < 8u; ++i) {
+        const uvec2 code = push.spheres.at[8u * block + i];
+        if (bsh_is_absent(code)) continue;
+        const Sphere s = bsh_decode(frame, code);
+        const uint where = classify(view, s, height, push.epsilon, push.map_size);
+        look(e, view, s.center - view.position, s.radius, height, where);
+        e.found |= (where == node_view_drawn ? 0x1u : where == node_view_culled ? 0x100u : 0x10000u) << i;
+    }
+    return e;
+}

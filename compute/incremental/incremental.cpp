@@ -1,0 +1,92 @@
+#include "compute/incremental/incremental.hpp"
+
+#include "compute/kernels.hpp"
+
+namespace myriad::compute {
+
+using engine::compute_kernels;
+
+namespace {
+
+constexpr uint64_t carried_words = sizeof(CarriedState) / sizeof(uint);
+
+}  // namespace
+
+CarriedCut::CarriedCut(engine::Device& device, AppendMode mode, uint64_t capacity, uint32_t first_view, uint32_t views)
+    : first_view_(first_view), views_(views), lists_(device, mode, capacity, capacity), restart_(device, compute_kernels, "incremental/restart"),
+      travel_(device, compute_kernels, "incremental/travel"), place_(device, compute_kernels, "incremental/place"),
+      due_kernel_(device, compute_kernels, "incremental/due"), update_(device, compute_kernels, "incremental/update"),
+      open_(device, compute_kernels, "incremental/open"), dues_(device, "lists", "dues", capacity),
+      found_(device, "lists", "dues found", mode == AppendMode::scan ? capacity : 0), free_(device, "lists", "holes", capacity),
+      state_words_(device, "lists", "carried state", carried_words),
+      report_(device, "lists", "carried report", carried_words, engine::Location::host), travels_(device, "lists", "travels", views),
+      before_(device, "lists", "views before", views), refs_(device, "lists", "carried memory", 1, engine::Location::host) {
+    assert(capacity >= views);
+}
+
+uint64_t CarriedCut::bytes(const engine::Device& device, AppendMode mode, uint64_t capacity, uint32_t views) {
+    return AppendLists::bytes(device, mode, capacity, capacity) + capacity * ((mode == AppendMode::scan ? 2 : 1) * sizeof(Due) + sizeof(uint)) +
+           views * (sizeof(Travel) + sizeof(View)) + sizeof(CarriedRefs) + 2 * sizeof(CarriedState);
+}
+
+// All of it is written, as far as barriers go: the frame's steps follow one another anyway.
+Ref<CarriedRefs> CarriedCut::memory(engine::Recorder& recorder) {
+    refs_.span()[0] = {.codes = recorder.write(lists_.kept()),
+                       .dues = recorder.write(dues_),
+                       .free = recorder.write(free_),
+                       .found = recorder.write(found_),
+                       .travels = recorder.write(travels_),
+                       .before = recorder.write(before_),
+                       .state = {recorder.write(state_words_).address}};
+    return recorder.read(refs_);
+}
+
+void CarriedCut::record(engine::Recorder& recorder, const ManyLodsInputs& in, const CarrySettings& settings, bool bounds_moved) {
+    assert(in.first_view == first_view_ && in.limit == views_ && first_view_ + views_ <= cut_max_views && in.tree.blocks() < cut_max_blocks);
+    if (in.tree.empty()) return lists_.begin(recorder, due_kernel_, in.view_count, 0, 0), lists_.end(recorder);
+    const auto travel = [&] {
+        return TravelPush{.views = recorder.read(in.views), .count = recorder.read(in.view_count), .memory = memory(recorder),
+                          .first_view = first_view_, .limit = views_, .over_root = in.tree.blocks()};
+    };
+    const bool from_roots = !started_;
+    if (from_roots) recorder.dispatch(restart_, travel(), views_);
+    started_ = true;
+    recorder.dispatch(travel_, travel(), views_);
+
+    uint flags = settings.everything || bounds_moved ? carry_all : 0u;
+    const auto push = [&](const AppendRef& ref) {
+        const BshRef tree = in.tree.read(recorder);
+        return CarryPush{.lists = ref, .frames = tree.frames, .spheres = tree.spheres, .views = recorder.read(in.views),
+                         .memory = memory(recorder), .leaves = tree.leaves, .blocks = tree.blocks, .epsilon = in.epsilon,
+                         .map_size = in.map_size, .first_view = first_view_, .flags = flags};
+    };
+    const auto place = [&](uint close) {
+        recorder.dispatch(place_, PlacePush{.lists = lists_.write_state(recorder), .memory = memory(recorder),
+                                            .capacity = uint(lists_.kept_capacity()), .close = close}, 1);
+    };
+    lists_.begin(recorder, due_kernel_, state_words_, 0, uint32_t(lists_.kept_capacity()), 0);
+    lists_.step(recorder, due_kernel_, bsh_arity + 1, push);
+    lists_.step(recorder, update_, bsh_arity + 1, push);
+    place(0);
+    const uint32_t levels = in.tree.levels();
+    const uint32_t steps = settings.edges > 0 && !from_roots ? std::min(settings.edges, levels) : levels;
+    for (uint32_t step = 1; step <= steps; ++step) {
+        if (step == steps && steps < levels) flags |= carry_last;
+        lists_.step(recorder, open_, bsh_arity + 1, push);
+    }
+    place(1);
+    lists_.end(recorder);
+    recorder.copy(state_words_, report_, report_.bytes());
+}
+
+CarryReport CarriedCut::report() const {
+    CarriedState s;
+    std::memcpy(&s, report_.span().data(), sizeof s);
+    CarryReport report;
+    report.lists = lists_.report();
+    report.dropped = s.dropped, report.made = s.made, report.holes = s.holes, report.invalid = s.invalid;
+    report.due = report.lists.opened - report.made;  // what the two kinds of steps evaluated
+    return report;
+}
+
+}  // namespace myriad::compute

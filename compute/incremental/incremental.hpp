@@ -1,0 +1,56 @@
+// Cuts that are carried from frame to frame (ManyLoDs 3.2 and 3.3); see README.md.
+#pragma once
+
+#include "compute/manylods/manylods.hpp"
+#include "compute/incremental/incremental_io.h"
+
+namespace myriad::compute {
+
+// What a frame did to a carried cut; read after the submission.
+struct CarryReport {
+    AppendReport lists;                    // `processed` counts node-views evaluated, `kept` is the length of the list
+    uint64_t due = 0, dropped = 0, made = 0, holes = 0;  // items
+    uint64_t invalid = 0;                  // node-views of the cut that should be open (lazy)
+    uint64_t items() const { return lists.kept - holes; }
+};
+
+struct CarrySettings {
+    bool everything = false;  // evaluate every item, as the paper does, not only those that are due
+    uint32_t edges = 0;       // lazy: q, the most edges that a node-view goes down in a frame; 0: as many as it takes
+};
+
+// The cuts of a range of views. In a frame of incremental updates they are the basic cuts as a set, whatever they were before.
+class CarriedCut {
+public:
+    // Room for `capacity` open blocks, at least one a view. Views [first_view, first_view + views) of those that exist.
+    CarriedCut(engine::Device& device, AppendMode mode, uint64_t capacity, uint32_t first_view, uint32_t views);
+
+    // Forgets the cut: the next frame starts from the roots, and is not lazy. Due when the tree was built anew, or a frame overflowed.
+    void restart() { started_ = false; }
+
+    // Brings the cut up to date. `in` names the same range of views as the constructor and the same epsilon and map size in every
+    // frame. `bounds_moved`: the tree was refitted since the last frame.
+    void record(engine::Recorder& recorder, const ManyLodsInputs& in, const CarrySettings& settings, bool bounds_moved);
+
+    // The cut for those who draw it: its kept list holds the groups, and holes that draw nothing.
+    const AppendLists& lists() const { return lists_; }
+    CarryReport report() const;
+
+    static uint64_t bytes(const engine::Device& device, AppendMode mode, uint64_t capacity, uint32_t views);
+
+private:
+    Ref<CarriedRefs> memory(engine::Recorder& recorder);
+
+    uint32_t first_view_, views_;
+    bool started_ = false;
+    AppendLists lists_;
+    engine::Program restart_, travel_, place_;
+    AppendKernel due_kernel_, update_, open_;
+    engine::Array<Due> dues_, found_;
+    engine::Array<uint> free_, state_words_, report_;
+    engine::Array<Travel> travels_;
+    engine::Array<View> before_;
+    engine::Array<CarriedRefs> refs_;
+};
+
+}  // namespace myriad::compute

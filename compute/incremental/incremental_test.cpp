@@ -1,0 +1,318 @@
+#include "compute/incremental/incremental.hpp"
+
+#include <algorithm>
+#include <memory>
+
+#include "compute/incremental/incremental_ref.hpp"
+#include "engine/testing.hpp"
+
+namespace myriad::compute {
+namespace {
+
+using engine::same;
+
+class IncrementalTest : public engine::DeviceTest {
+protected:
+    float uniform(float lo = -1, float hi = 1) { return std::uniform_real_distribution<float>(lo, hi)(random); }
+    float log_uniform(float lo, float hi) { return std::exp(uniform(std::log(lo), std::log(hi))); }
+    glm::vec3 point(float scale = 1) { return glm::vec3(uniform(), uniform(), uniform()) * scale; }
+
+    // ---- A scene that may move ----
+    std::vector<glm::vec3> positions;
+    std::vector<glm::uvec4> triangles;
+    std::unique_ptr<Bsh> tree;
+    HostTree host;
+
+    void soup(size_t n, uint32_t log2_samples, float size = 0.1f) {
+        for (size_t i = 0; i < n; ++i) {
+            const glm::vec3 middle = point();
+            for (int k = 0; k < 3; ++k) positions.push_back(middle + point(size));
+            triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2, 0});
+        }
+        tree = std::make_unique<Bsh>(device, WorldTriangles{positions, triangles}, log2_samples, 1);
+        refit();
+    }
+    void refit() {
+        if (!tree->empty()) {
+            const auto on_p = on_device(std::vector<vec3>(positions));
+            const auto on_t = on_device(std::vector<uvec4>(triangles));
+            engine::Recorder recorder(device);
+            tree->refit(recorder, on_p, on_t);
+            recorder.submit_and_wait();
+        }
+        host = HostTree(device, *tree);
+    }
+
+    // ---- Views that move ----
+    View view(glm::vec3 position, glm::vec3 direction, float phi) {
+        return {position, phi == 1 ? 0 : phi == 2 ? -1 : std::cos(phi * 1.5707963f), glm::normalize(direction), phi == 1 ? 1 : phi == 2 ? 0 : std::sin(phi * 1.5707963f)};
+    }
+    View random_view() {
+        const float phis[] = {1, 1, 0.5f, 1.5f, 2};
+        return view(point(1.2f), point(), phis[random() % 5]);
+    }
+    std::vector<View> random_views(size_t n) {
+        std::vector<View> views;
+        while (views.size() < n) views.push_back(random_view());
+        return views;
+    }
+    // Rest, drift, shift, turn, jump.
+    void move(View& v) {
+        switch (random() % 8) {
+            case 0: case 1: break;
+            case 2: v.position += point(log_uniform(1e-8f, 1e-3f)); break;
+            case 3: v.position += point(log_uniform(1e-3f, 0.3f)); break;
+            case 4: v.direction = glm::normalize(v.direction + point(log_uniform(1e-7f, 1e-2f))); break;
+            case 5: v.direction = glm::normalize(v.direction + point(log_uniform(1e-2f, 1))); v.position += point(0.01f); break;
+            case 6: v.position = positions.empty() ? vec3(0) : vec3(positions[random() % positions.size()]); break;  // on a surface
+            default: if (random() % 8 == 0) v = random_view();
+        }
+    }
+
+    struct Frame {
+        std::vector<uvec2> groups;
+        CarryReport report;
+    };
+    // One frame of views [0, views.size()) of at most `most`.
+    Frame run(CarriedCut& cut, const std::vector<View>& views, uint32_t most, const CarrySettings& settings, bool bounds_moved, float epsilon, uint map_size) {
+        std::vector<View> all = views;
+        all.resize(std::max<size_t>(most, 1), {vec3(7), 1, vec3(1, 0, 0), 0});
+        const auto on = on_device(all);
+        const auto count = on_device(std::vector<uint>{uint(views.size())});
+        engine::Recorder recorder(device);
+        cut.record(recorder, {*tree, on, count, 0, most, epsilon, map_size}, settings, bounds_moved);
+        recorder.submit_and_wait();
+        Frame frame{{}, cut.report()};
+        frame.groups = engine::download(device, cut.lists().kept(), std::min<uint64_t>(frame.report.lists.kept, cut.lists().kept_capacity()));
+        return frame;
+    }
+    // Without holes, and without the roots that stand for views that do not exist.
+    static std::vector<NodeView> cut_of(const Frame& frame, size_t views) {
+        std::vector<uvec2> groups;
+        for (const uvec2& code : frame.groups)
+            if (!cut_is_hole(code) && cut_unpack(code).view < views) groups.push_back(code);
+        return node_views(groups);
+    }
+};
+
+// The slack's promise: nothing that moves less changes side.
+TEST_F(IncrementalTest, slack_is_not_exceeded_by_what_moves_less) {
+    size_t changed = 0, used = 0, worth = 0;
+    for (int i = 0; i < 400000; ++i) {
+        const View v = random_view();
+        const float epsilon = log_uniform(0.2f, 10), size = float(8u << random() % 5), q = size / epsilon;
+        const uint height = random() % 4;
+        Sphere s{v.position + point() * log_uniform(1e-3f, 10), 0};
+        const vec3 d = s.center - v.position;
+        const float length = std::sqrt(dot(d, d));
+        s.radius = length * (random() % 2 ? log_uniform(1e-6f, 2) : 2 / q * uniform(0.3f, 1.2f));  // any, or about on the threshold
+        const uint where = classify(v, s, height, epsilon, uint(size));
+        const float slack = node_slack(v, d, length, s.radius, height, where, q);
+        Travel t{log_uniform(1e-6f, 10), log_uniform(1e-6f, 10), travel_exists};
+        const Due due = due_after(t, slack, length);
+        View moving = v;
+        for (int step = 0; step < 4; ++step) {
+            View now = moving;
+            const float far = std::max(slack, 0.0f) * uniform(0, 0.6f) + log_uniform(1e-9f, 1e-3f) * (random() % 3 == 0);
+            if (random() % 3) now.position += glm::normalize(random() % 2 ? point() : d) * far * (random() % 2 ? 1.0f : -1.0f);
+            if (random() % 3) now.direction = glm::normalize(now.direction + glm::normalize(point()) * (far / length));
+            t = travel_on(t, moving, true, now, true);
+            moving = now;
+            const bool side = classify(now, s, height, epsilon, uint(size)) != where;
+            changed += side;
+            if (is_due(due, t)) break;
+            ++used;
+            worth += (t.flags & travel_moved) != 0;
+            ASSERT_FALSE(side) << i << ": " << where << " slack " << slack << " distance " << length << " radius " << s.radius;
+        }
+    }
+    EXPECT_TRUE(changed > 1000 && used > 100000 && worth > 100000) << changed << " " << used << " " << worth;
+}
+
+// From whatever cut was there, over jumps, views that come and go, and geometry that moves: the basic cut, exactly.
+TEST_F(IncrementalTest, follows_the_basic_cut_through_random_frames) {
+    soup(150, 9);
+    const uint32_t most = 24;
+    for (AppendMode mode : {AppendMode::scan, AppendMode::atomic}) {
+        CarriedCut cut(device, mode, 1 << 14, 0, most);
+        std::vector<View> views = random_views(most);
+        uint64_t evaluated = 0, needed = 0, reused = 0;
+        for (int f = 0; f < 1100; ++f) {
+            SCOPED_TRACE(f);
+            for (View& v : views) move(v);
+            if (random() % 10 == 0) views.resize(random() % (most + 1), random_view());
+            if (random() % 4 == 0) while (views.size() < most) views.push_back(random_view());
+            const bool moved = random() % 12 == 0;
+            if (moved) {
+                for (auto& p : positions) p += point(f % 3 ? 0.01f : 0.3f);
+                refit();
+            }
+            const Frame frame = run(cut, views, most, {}, moved, 1, 16);
+            ASSERT_TRUE(frame.report.lists.ok());
+            const CutRef expected = cut_ref(host, views, 1, 16);
+            ASSERT_TRUE(same(expected.cut, cut_of(frame, views.size())));
+            ASSERT_EQ(partition_violation(host, cut_of(frame, views.size()), uint(views.size())), "");
+            ASSERT_EQ(frame.report.invalid, 0u);
+            if (f > 0 && !moved) evaluated += frame.report.lists.processed, needed += expected.tested;
+            reused += frame.report.made > 0 && frame.report.holes > 0;
+        }
+        EXPECT_LT(evaluated, needed / 2) << "half of the views hardly move";
+        EXPECT_GT(reused, 20u);
+    }
+}
+
+// 3.3: the twin evaluates everything in every frame, the device what is due; the cuts are the same.
+TEST_F(IncrementalTest, lazy_lags_by_the_edges_it_may_not_walk) {
+    soup(150, 12);
+    const uint32_t most = 12;
+    for (uint32_t edges : {1u, 2u, 3u}) {
+        CarriedCut cut(device, edges == 2 ? AppendMode::atomic : AppendMode::scan, 1 << 15, 0, most);
+        CarriedCutRef twin;
+        std::vector<View> views = random_views(most);
+        uint64_t invalid = 0;
+        for (int f = 0; f < 100; ++f) {
+            SCOPED_TRACE(testing::Message() << "q " << edges << " frame " << f);
+            if (f % 10 > 3) for (View& v : views) move(v);  // rests at times, and catches up
+            if (random() % 10 == 0) views.resize(random() % (most + 1), random_view());
+            if (random() % 4 == 0) while (views.size() < most) views.push_back(random_view());
+            const Frame frame = run(cut, views, most, {.edges = edges}, false, 0.7f, 32);
+            twin.update(host, views, most, 0.7f, 32, edges);
+            ASSERT_TRUE(same(twin.cut(host, views, 0.7f, 32), cut_of(frame, views.size())));
+            ASSERT_EQ(frame.report.invalid, twin.invalid());
+            ASSERT_EQ(partition_violation(host, cut_of(frame, views.size()), uint(views.size())), "");
+            invalid += frame.report.invalid;
+        }
+        EXPECT_GT(invalid, 0u);
+        for (uint32_t rest = 0; rest < tree->levels(); ++rest) run(cut, views, most, {.edges = edges}, false, 0.7f, 32);
+        EXPECT_TRUE(same(cut_ref(host, views, 0.7f, 32).cut, cut_of(run(cut, views, most, {.edges = edges}, false, 0.7f, 32), views.size())));
+    }
+}
+
+TEST_F(IncrementalTest, what_rests_costs_no_evaluation) {
+    soup(100, 9);
+    const std::vector<View> views = random_views(30);
+    CarriedCut cut(device, AppendMode::scan, 1 << 14, 0, 30);
+    EXPECT_GT(run(cut, views, 30, {}, false, 1, 32).report.lists.processed, 1000u);
+    for (int f = 0; f < 3; ++f) {
+        const CarryReport still = run(cut, views, 30, {}, false, 1, 32).report;
+        EXPECT_EQ(still.lists.processed, 0u);
+        EXPECT_EQ(still.due + still.made + still.dropped, 0u);
+    }
+    std::vector<View> one = views;
+    one[7].position += 0.3f;
+    const CarryReport some = run(cut, one, 30, {}, false, 1, 32).report;
+    EXPECT_TRUE(some.due > 0 && some.due < some.items() / 10) << some.due << " of " << some.items();
+    const CarryReport all = run(cut, one, 30, {.everything = true}, false, 1, 32).report;
+    EXPECT_EQ(all.due, all.items()) << "the paper's way";
+    EXPECT_EQ(all.made + all.dropped, 0u);
+}
+
+TEST_F(IncrementalTest, same_frames_same_bits) {
+    soup(100, 9);
+    std::vector<std::vector<View>> path{random_views(40)};
+    for (int f = 0; f < 6; ++f) {
+        path.push_back(path.back());
+        for (View& v : path.back()) move(v);
+    }
+    CarriedCut a(device, AppendMode::scan, 1 << 14, 0, 40), b(device, AppendMode::scan, 1 << 14, 0, 40);
+    for (const auto& views : path) EXPECT_TRUE(same(run(a, views, 40, {}, false, 1, 32).groups, run(b, views, 40, {}, false, 1, 32).groups));
+}
+
+TEST_F(IncrementalTest, trees_and_view_counts_at_boundaries) {
+    for (uint32_t depth : {0u, 1u, 3u, 4u, 8u}) {
+        positions.clear(), triangles.clear();
+        soup(40, depth);
+        for (uint32_t n : {1u, 7u, 65u}) {
+            SCOPED_TRACE(testing::Message() << "depth " << depth << " views " << n);
+            std::vector<View> views = random_views(n);
+            CarriedCut cut(device, AppendMode::scan, 1 << 14, 0, n);
+            for (int f = 0; f < 4; ++f) {
+                ASSERT_TRUE(same(cut_ref(host, views, 1, 32).cut, cut_of(run(cut, views, n, {}, false, 1, 32), n)));
+                for (View& v : views) move(v);
+            }
+        }
+    }
+    positions.clear(), triangles.clear();
+    soup(0, 9);
+    CarriedCut cut(device, AppendMode::scan, 64, 0, 5);
+    EXPECT_EQ(run(cut, random_views(5), 5, {}, false, 1, 32).report.lists.kept, 0u);
+}
+
+// Hard cases of the spec: sizes, distances, coincidence, thresholds met exactly.
+TEST_F(IncrementalTest, hard_cases) {
+    const auto check = [&](const char* name, float scale, glm::vec3 origin) {
+        SCOPED_TRACE(name);
+        tree = std::make_unique<Bsh>(device, WorldTriangles{positions, triangles}, 9, 1);
+        refit();
+        for (float epsilon : {1.0f, 20.0f}) {
+            CarriedCut cut(device, AppendMode::scan, 1 << 15, 0, 30);
+            std::vector<View> views = random_views(30);
+            for (View& v : views) v.position = v.position * scale + origin;
+            for (int f = 0; f < 12; ++f) {
+                ASSERT_TRUE(same(cut_ref(host, views, epsilon, 32).cut, cut_of(run(cut, views, 30, {}, false, epsilon, 32), 30)));
+                for (View& v : views) {
+                    View w = v;
+                    w.position = (w.position - origin) / scale;
+                    move(w);
+                    w.position = random() % 4 || positions.empty() ? w.position * scale + origin : vec3(positions[random() % positions.size()]);
+                    v = w;
+                }
+            }
+        }
+    };
+    const auto random_soup = [&](size_t n, float scale, glm::vec3 origin) {
+        positions.clear(), triangles.clear();
+        for (size_t i = 0; i < n; ++i) {
+            const glm::vec3 middle = point();
+            for (int k = 0; k < 3; ++k) positions.push_back((middle + point(0.1f)) * scale + origin);
+            triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2, 0});
+        }
+    };
+    for (float scale : {1e-6f, 1e6f, 1e-12f}) {
+        random_soup(60, scale, vec3(0));
+        check("scaled", scale, vec3(0));
+    }
+    random_soup(60, 1, vec3(1e6f));
+    check("a million away", 1, vec3(1e6f));
+    positions.assign(3, glm::vec3(0.3f, 0.2f, 0.1f)), triangles = {{0, 1, 2, 0}};
+    check("coincident", 1, vec3(0));
+    random_soup(60, 1e-3f, vec3(0));
+    for (glm::vec3 p : {glm::vec3(-1, 0, -1), glm::vec3(1, 0, -1), glm::vec3(0, 0, 1)}) positions.push_back(p * 1e3f);
+    triangles.push_back({180, 181, 182, 0});
+    check("one to a million", 1, vec3(0));
+}
+
+TEST_F(IncrementalTest, a_list_that_is_too_short_says_so_and_a_longer_one_has_the_cut) {
+    soup(100, 9);
+    std::vector<View> views = random_views(20);
+    const auto expected = cut_ref(host, views, 1, 32).cut;
+    for (AppendMode mode : {AppendMode::scan, AppendMode::atomic}) {
+        int redone = 0;
+        for (uint64_t capacity = 20;; ++redone) {
+            ASSERT_LT(redone, 20);
+            CarriedCut cut(device, mode, capacity, 0, 20);
+            const Frame frame = run(cut, views, 20, {}, false, 1, 32);
+            if (frame.report.lists.ok()) {
+                EXPECT_TRUE(same(expected, cut_of(frame, 20)));
+                EXPECT_TRUE(same(expected, cut_of(run(cut, views, 20, {}, false, 1, 32), 20)));
+                break;
+            }
+            capacity = std::max({capacity + 1, frame.report.lists.next_needed, frame.report.lists.kept_needed});
+        }
+        EXPECT_GT(redone, 0);
+    }
+}
+
+TEST_F(IncrementalTest, restart_forgets) {
+    soup(100, 9);
+    std::vector<View> views = random_views(20);
+    CarriedCut cut(device, AppendMode::scan, 1 << 14, 0, 20);
+    const Frame first = run(cut, views, 20, {}, false, 1, 32);
+    cut.restart();
+    const Frame again = run(cut, views, 20, {}, false, 1, 32);
+    EXPECT_TRUE(same(first.groups, again.groups));
+    EXPECT_EQ(first.report.lists.processed, again.report.lists.processed);
+}
+
+}  // namespace
+}  // namespace myriad::compute

@@ -1,0 +1,95 @@
+// How far a view may move until a node-view can change side, so that blocks whose slack is not used up need not be looked at.
+//
+// classify (manylods_io.h) depends on the view's position p and direction n through two functions:
+//     f = frustum distance - cull radius      changes by at most |dp| + |d| |dn|
+//     g = |d.x| + sqrt(L^2 - r^2) - q r       with q = map size / epsilon; g > 0 where the criterion is below epsilon
+// In the valid region the tangent's length t = sqrt(L^2 - r^2) is at least r (q^2 - 1) / 2q, so |grad g| <= 1 + L / t <= 2 q^2 / (q^2 - 1).
+// In the open region |d.x| + t stays below q r as long as |d.x| + L + 2 |dp| does, or, since t is concave in L, as long as |d.x| + t +
+// (1 + L / t) |dp| does. Below q = 2 there is no slack.
+//
+// What a view has travelled is summed up in two numbers, metres moved and radians (chords) turned. An item's due is
+//     moved + reach turned + slack     at the time it was evaluated, with |d| <= reach until then,
+// and it is due when moved + reach turned has come that far. Sums are rounded up, dues down.
+#ifndef MYRIAD_COMPUTE_SLACK_H
+#define MYRIAD_COMPUTE_SLACK_H
+
+#include "compute/manylods/manylods_io.h"
+
+MYRIAD_BEGIN
+// f and g are good to 2^-19 of the lengths they are made of (paraboloid.h).
+const float slack_rounding = 1.0f / 262144.0f;
+
+struct Due {
+    float at;      // -infinity: at once, moved or not
+    float reach;
+};
+MYRIAD_ARRAY(Dues, Due, 8)
+
+const uint travel_exists = 1u;
+const uint travel_moved = 2u;   // this frame
+const uint travel_jumped = 4u;  // this frame, in a way that no slack covers: it came, went, or has another frustum
+struct Travel {
+    float moved;
+    float turned;
+    uint flags;
+};
+MYRIAD_ARRAY(Travels, Travel, 4)
+
+MYRIAD_FN float next_up(float positive) { return uintBitsToFloat(floatBitsToUint(positive) + 1u); }
+
+MYRIAD_FN Travel travel_on(Travel t, View before, bool existed, View now, bool exists) {
+    const vec3 dp = now.position - before.position;
+    const vec3 dn = now.direction - before.direction;
+    const float moved = sqrt(dot(dp, dp));
+    const float turned = sqrt(dot(dn, dn));
+    t.flags = exists ? travel_exists : 0u;
+    if (exists != existed || now.cos_phi != before.cos_phi || now.sin_phi != before.sin_phi || !(moved + turned < 1e18f)) {
+        t.flags |= travel_jumped;
+        return t;
+    }
+    if (now.position == before.position && now.direction == before.direction) return t;
+    t.flags |= travel_moved;
+    // Squares that underflow, and what sums and roots round off.
+    t.moved = next_up(t.moved + (moved * (1.0f + slack_rounding) + 1e-18f));
+    t.turned = next_up(t.turned + (turned * (1.0f + slack_rounding) + 1e-18f));
+    return t;
+}
+
+// The same in every kernel, so that an item of a view that rests is exactly where it was.
+MYRIAD_FN float travelled(Travel t, float reach) {
+    MYRIAD_PRECISE const float sum = t.moved + reach * t.turned;
+    return sum;
+}
+
+// Metres; not positive: any movement may change it. `length` is |d|.
+MYRIAD_FN float node_slack(View view, vec3 d, float length, float r, uint height, uint where, float q) {
+    const float reach = reach_of(d, r);
+    const bool all_round = view.cos_phi < 0.0f && view.sin_phi == 0.0f;  // nothing is ever culled
+    // The cull radius moves along a little: less than 2^-10 of the way.
+    float slack = all_round ? 1e30f : (abs(frustum_distance(view, d) - cull_radius(d, r, height)) - slack_rounding * reach) * (1.0f - 1.0f / 1024.0f);
+    if (where == node_view_culled || height == 0u) return slack;
+    const float tangent = sqrt(max(length * length - r * r, 0.0f));
+    const float x = abs(d.x);
+    const float over = x + tangent - q * r;
+    float free = 0.0f;
+    if (where == node_view_drawn) free = over * (0.5f - 0.5f / (q * q));
+    else free = max(0.5f * (q * r - x - length), 4.0f * tangent > length ? -over * tangent / (tangent + length) : 0.0f);
+    if (q < 2.0f) free = 0.0f;
+    return min(slack, free - slack_rounding * (reach + q * r));
+}
+
+// When an item of least slack `slack` is due, whose nodes' centres are within `reach`.
+MYRIAD_FN Due due_after(Travel t, float slack, float reach) {
+    Due due;
+    due.reach = (reach + max(slack, 0.0f)) * (1.0f + slack_rounding);
+    const float now = travelled(t, due.reach);
+    due.at = max(now, now + slack - (now + abs(slack)) * slack_rounding);
+    return due;
+}
+MYRIAD_FN bool is_due(Due due, Travel t) {
+    if ((t.flags & travel_jumped) != 0u || due.at < 0.0f) return true;
+    return (t.flags & travel_moved) != 0u && !(travelled(t, due.reach) < due.at);
+}
+MYRIAD_END
+
+#endif

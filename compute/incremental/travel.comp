@@ -1,0 +1,19 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// How far each view has come since the last frame (slack.h).
+#include "engine/kernel.glsl"
+#include "compute/incremental/incremental_io.h"
+layout(push_constant, scalar) uniform Push { TravelPush push; };
+
+void main() {
+    const uint i = thread_index();
+    if (i >= push.limit) return;
+    CarriedRefs memory = push.memory.at[0];
+    const bool exists = push.first_view + i < push.count.at[0];
+    View now = memory.before.at[i];
+    if (exists) now = push.views.at[push.first_view + i];
+    Travel t = memory.travels.at[i];
+    t = travel_on(t, memory.before.at[i], (t.flags & travel_exists) != 0u, now, exists);
+    memory.travels.at[i] = t;
+    memory.before.at[i] = now;
+}
