@@ -33,7 +33,8 @@ GatherVisibility gather_visibility(Visibility v) {
 
 MapSettings map_settings(const FrameSettings& settings) {
     MapSettings maps = settings.maps;
-    maps.method = settings.visibility == Visibility::brute ? MapMethod::brute : MapMethod::manylods;
+    maps.method = settings.visibility == Visibility::brute ? MapMethod::brute : settings.visibility == Visibility::ism ? MapMethod::ism : MapMethod::manylods;
+    maps.seed = settings.seed;
     return maps;
 }
 
@@ -79,16 +80,17 @@ Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::T
     size_.bvh_nodes = bvh_.nodes();
 
     if (DirectPass::needed(lights_)) direct_.emplace(device, settings.width, settings.height, 0, bvh_.constants());
-    if (lights_.power() > 0 && settings.vpls > 0 && !triangles.triangles.empty()) make_indirect(derived);
+    if (lights_.power() > 0 && settings.vpls > 0 && !triangles.triangles.empty()) make_indirect(derived, triangles.hi - triangles.lo);
     step("compiling kernels", [&] { recorder_.warm_up(); });
     if (!vpl_) return;
     step("finding where light goes", [&] { vpl_->prepare(recorder_, geometry_, bvh_, lights_, settings.bounces, settings.seed); });
+    if (maps_) maps_->place(recorder_, map_scene());
     if (!tree_) return;
     auto scope = recorder_.scope("refit");
     tree_->refit(recorder_, geometry_.positions(), geometry_.triangles(), geometry_.instances(), geometry_.opacity());
 }
 
-void Frame::make_indirect(compute::Derived& derived) {
+void Frame::make_indirect(compute::Derived& derived, const vec3& extent) {
     const FrameSettings& settings = settings_;
     vpl_.emplace(device_, settings.vpls, bvh_.constants());
     vpl_->sure_paths(lights_, settings.bounces);  // throws when not one path fits
@@ -99,8 +101,14 @@ void Frame::make_indirect(compute::Derived& derived) {
         size_.samples = tree_->leaves();
         size_.bsh_blocks = tree_->blocks();
     }
-    if (gather_visibility(settings.visibility) == GatherVisibility::maps)
-        maps_.emplace(device_, map_settings(settings), settings.vpls, block_ * block_, &derived.world());
+    compute::SurfaceSampling sampling;
+    if (settings.visibility == Visibility::ism) {
+        sampling = step("sampling the surface", [&] { return derived.samples(settings.log2_samples, settings.seed); });
+        size_.samples = sampling.samples.size();
+    }
+    if (gather_visibility(settings.visibility) != GatherVisibility::maps) return;
+    const IsmScene points{derived.world(), sampling, std::max({extent.x, extent.y, extent.z})};
+    maps_.emplace(device_, map_settings(settings), settings.vpls, block_ * block_, &derived.world(), &points);
 }
 
 void Frame::report(const std::string& stage, double done) const {
@@ -160,7 +168,7 @@ void Frame::gather_indirect(float pixel_angle) {
     recorder_.fill(exhausted_, 0);
     for (uint32_t first = 0; first < views;) {
         const uint32_t batch = maps_ ? maps_->batch() : gather_->max_vpls(block_);
-        if (maps_) maps_->record(recorder_, {.tree = tree(), .geometry = &geometry_}, vpl_->views(), vpl_->count(), first);
+        if (maps_) maps_->record(recorder_, map_scene(), vpl_->views(), vpl_->count(), first);
         {
             auto scope = recorder_.scope("gather");
             if (settings_.visibility == Visibility::rays)

@@ -24,6 +24,7 @@ namespace myriad::passes {
 enum class Visibility {
     manylods,  // maps from cuts through the BSH
     brute,     // maps of all triangles
+    ism,       // imperfect shadow maps
     rays,      // exact: the same-VPL reference
     none,      // every VPL reaches every receiver
 };
@@ -93,7 +94,8 @@ private:
           const FrameSettings& settings);
     Frame(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles, const GeometryData& data, compute::Derived derived,
           const FrameSettings& settings);
-    void make_indirect(compute::Derived& derived);
+    void make_indirect(compute::Derived& derived, const vec3& extent);
+    MapScene map_scene() const { return {.tree = tree(), .geometry = &geometry_}; }
     template <class Make>
     auto step(const char* name, Make make);  // reports it and times it
     void gather_indirect(float pixel_angle);

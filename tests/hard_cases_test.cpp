@@ -61,10 +61,10 @@ protected:
         return ::testing::AssertionSuccess();
     }
 
-    // Finite by all kinds of visibility. Returns the images: maps, rays, none, maps of all triangles.
+    // Finite by all kinds of visibility. Returns the images: maps, rays, none, maps of all triangles, imperfect ones.
     std::vector<Image> all(const Kit& kit) {
         std::vector<Image> images;
-        for (Visibility v : {Visibility::manylods, Visibility::rays, Visibility::none, Visibility::brute}) {
+        for (Visibility v : {Visibility::manylods, Visibility::rays, Visibility::none, Visibility::brute, Visibility::ism}) {
             SCOPED_TRACE(testing::Message() << "visibility " << int(v));
             images.push_back(render(kit, small(v)));
             expect_finite(images.back());

@@ -46,7 +46,7 @@ void add_outputs(CLI::App& command, RenderOptions& o) {
 
 void add_technique(CLI::App& command, passes::FrameSettings& s) {
     add_choice(command, "--visibility", s.visibility, visibilities(),
-               "whether a VPL sees a pixel: by its map, drawn from its cut through the scene\n(manylods) or of all triangles (brute); by exact rays, the reference; or taken for granted");
+               "whether a VPL sees a pixel: by its map, drawn from its cut through the scene\n(manylods), of all triangles (brute) or of few points (ism: imperfect shadow maps); by exact rays, the reference; or taken for granted");
     add_whole(command, "--vpls", s.vpls, 0, 1u << 24, "virtual point lights at most; 0: no indirect light");
     add_whole(command, "--bounces", s.bounces, 0, 64, "diffuse reflections of light before what the camera sees");
     add_parsed(command, "--gather", "all|subset:K", show_gather(s.subset), "VPLs that each pixel gathers: all, or about K, a different subset\n"
@@ -55,6 +55,7 @@ void add_technique(CLI::App& command, passes::FrameSettings& s) {
     add_number(command, "--vpl-bound", s.vpl_bound, 1e-30f, 1e30f, "bound of the geometry term, 1/m^2; unless given pi * VPLs / area");
     add_whole(command, "--map-size", s.maps.map_size, 2, 1024, "texels a side of each half of a map");
     add_number(command, "--epsilon", s.maps.epsilon, 1e-3f, 1e6f, "largest diameter of a node in the cut, in texels of its map");
+    add_whole(command, "--ism-points", s.maps.ism.points, 1, 1u << 24, "points that ism draws into each map, of the --samples there are");
     add_number(command, "--bias", s.bias, 0, 1e6f, "receiver bias of maps, in half diagonals of a texel");
     add_whole(command, "--samples", s.log2_samples, 0, 28, "2^N points on the surface, the leaves of the tree that is cut");
     add_choice(command, "--append", s.maps.append, append_modes(), "how lists are appended to; images are the same");
@@ -72,7 +73,7 @@ const char* const footer =
 
 const Choices<passes::Visibility>& visibilities() {
     using passes::Visibility;
-    static const Choices<Visibility> choices = {{"manylods", Visibility::manylods}, {"brute", Visibility::brute}, {"rays", Visibility::rays}, {"none", Visibility::none}};
+    static const Choices<Visibility> choices = {{"manylods", Visibility::manylods}, {"brute", Visibility::brute}, {"ism", Visibility::ism}, {"rays", Visibility::rays}, {"none", Visibility::none}};
     return choices;
 }
 

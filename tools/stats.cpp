@@ -32,7 +32,8 @@ ordered_json scene_json(const RunRecord& run) {
     ordered_json scene = {{"name", run.scene}, {"camera", run.camera}, {"triangles", run.size.triangles}, {"lights", run.size.lights},
                           {"bvh_nodes", run.size.bvh_nodes}};
     if (run.size.instances) scene["instances"] = run.size.instances, scene["stored_triangles"] = run.size.stored_triangles;
-    if (run.size.samples) scene["samples"] = run.size.samples, scene["bsh_blocks"] = run.size.bsh_blocks;
+    if (run.size.samples) scene["samples"] = run.size.samples;
+    if (run.size.bsh_blocks) scene["bsh_blocks"] = run.size.bsh_blocks;
     return scene;
 }
 
@@ -128,6 +129,7 @@ ordered_json settings_json(const passes::FrameSettings& s, float vpl_bound) {
     if (s.visibility == passes::Visibility::rays || s.visibility == passes::Visibility::none) return json;
     json["map_size"] = s.maps.map_size;
     json["bias"] = shortest(s.bias);
+    if (s.visibility == passes::Visibility::ism) json["ism_points"] = s.maps.ism.points, json["log2_samples"] = s.log2_samples;
     if (s.visibility != passes::Visibility::manylods) return json;
     json["append"] = choice_name(append_modes(), s.maps.append);
     json["epsilon"] = shortest(s.maps.epsilon);

@@ -93,4 +93,20 @@ Bsh Derived::bsh(engine::Device& device, uint32_t log2_samples, uint32_t seed) {
     return {device, world_, leaves};
 }
 
+SurfaceSampling Derived::samples(uint32_t log2_samples, uint32_t seed) {
+    if (!cache_) return sample_surface(world_, log2_samples, seed);
+    const std::string entry_name = name("samples", {log2_samples, seed});
+    if (const auto entry = cache_->find(entry_name); entry && entry->parts() == 2) {
+        const auto samples = entry->array<SurfaceSample>(0);
+        const auto scalars = entry->array<LeavesScalars>(1);
+        if (scalars.size() == 1 && (samples.empty() || samples.size() == uint64_t(1) << log2_samples))
+            return {{samples.begin(), samples.end()}, scalars[0].area, scalars[0].radius};
+    }
+    SurfaceSampling sampling = sample_surface(world_, log2_samples, seed);
+    const LeavesScalars scalars{sampling.area, sampling.radius, 0};
+    const engine::Bytes parts[] = {bytes(sampling.samples), bytes(scalars)};
+    cache_->store(entry_name, parts);
+    return sampling;
+}
+
 }  // namespace myriad::compute

@@ -3,6 +3,7 @@
 
 #include "compute/bsh/bsh.hpp"
 #include "compute/raytrace/bvh.hpp"
+#include "compute/surface_sampling/surface_sampling.hpp"
 #include "engine/cache.hpp"
 
 namespace myriad::compute {
@@ -18,6 +19,8 @@ public:
     // `opacity`: as Bvh takes it.
     Bvh bvh(engine::Device& device, BvhQuality quality = BvhQuality::quick, OpacityReader opacity = {});
     Bsh bsh(engine::Device& device, uint32_t log2_samples, uint32_t seed);
+    // Samples as they come, along a curve through space, for who needs no tree.
+    SurfaceSampling samples(uint32_t log2_samples, uint32_t seed);
 
 private:
     // The name of what is made by these numbers.

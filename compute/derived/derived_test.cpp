@@ -49,6 +49,7 @@ protected:
         return {bsh.empty() ? std::vector<SurfaceSample>() : engine::download(device, bsh.samples()), bsh.area(), bsh.sample_radius(),
                 bvh.nodes(), bvh.triangles(), bvh.dropped(), bvh.bytes(), bvh.depth()};
     }
+    SurfaceSampling sampled(const Soup& soup, engine::Cache* cache) { return Derived(soup.world(), cache).samples(10, 1); }
     void made_opaque(const OpacityScene& scene, engine::Cache* cache) {
         EXPECT_FALSE(Derived(scene.world(), cache).bvh(device).asks());
     }
@@ -67,6 +68,20 @@ TEST_F(DerivedTest, is_the_same_made_stored_and_found) {
         EXPECT_EQ(cache.found(), 2u);
         EXPECT_TRUE(without == stored) << count;
         EXPECT_TRUE(without == found) << count;
+    }
+}
+
+TEST_F(DerivedTest, samples_without_a_tree) {
+    for (const uint32_t count : {0, 1000}) {
+        const Soup soup(count);
+        engine::Cache cache(folder);
+        const SurfaceSampling without = sampled(soup, nullptr), stored = sampled(soup, &cache), found = sampled(soup, &cache);
+        EXPECT_EQ(cache.missing(), 1u);
+        EXPECT_EQ(cache.found(), 1u);
+        for (const SurfaceSampling* s : {&stored, &found}) {
+            EXPECT_TRUE(s->area == without.area && s->radius == without.radius && s->samples.size() == without.samples.size());
+            EXPECT_EQ(std::memcmp(s->samples.data(), without.samples.data(), without.samples.size() * sizeof(SurfaceSample)), 0);
+        }
     }
 }
 

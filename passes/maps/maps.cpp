@@ -14,7 +14,8 @@ uint64_t atlas_words(uint32_t views, uint32_t map_size) { return uint64_t(views)
 
 }  // namespace
 
-ViewMaps::ViewMaps(engine::Device& device, const MapSettings& settings, uint32_t max_views, uint32_t multiple, const compute::WorldTriangles* world)
+ViewMaps::ViewMaps(engine::Device& device, const MapSettings& settings, uint32_t max_views, uint32_t multiple, const compute::WorldTriangles* world,
+                   const IsmScene* ism)
     : device_(device), settings_(settings), batch_(round_up(std::max(max_views, 1u), multiple)), multiple_(multiple) {
     SplatPass::check_map_size(device, settings.map_size);
     while (batch_ > multiple_ && !is_handy(batch_)) halve();
@@ -29,6 +30,7 @@ ViewMaps::ViewMaps(engine::Device& device, const MapSettings& settings, uint32_t
             break;
         }
         case MapMethod::brute: brute_.emplace(device, *world); break;
+        case MapMethod::ism: ism_.emplace(device, *ism, settings.ism, settings.seed); break;
     }
 }
 
@@ -61,6 +63,11 @@ void ViewMaps::make_lists(uint64_t next, uint64_t kept) {
 
 void ViewMaps::record(engine::Recorder& recorder, const MapScene& scene, const engine::Array<View>& views, const engine::Array<uint>& count,
                       uint32_t first) {
+    if (ism_) {
+        auto scope = recorder.scope("ism");
+        ism_->record(recorder, views, count, first, batch_, settings_.map_size, atlas_);
+        return;
+    }
     if (brute_) {
         auto scope = recorder.scope("brute");
         brute_->record(recorder, *scene.geometry, views, count, first, batch_, settings_.map_size, atlas_);
@@ -73,6 +80,10 @@ void ViewMaps::record(engine::Recorder& recorder, const MapScene& scene, const e
     }
     auto scope = recorder.scope("splat");
     splat_->record(recorder, {*lists_, tree, views, first, settings_.map_size}, atlas_);
+}
+
+void ViewMaps::place(engine::Recorder& recorder, const MapScene& scene) {
+    if (ism_) ism_->place(recorder, *scene.geometry);
 }
 
 bool ViewMaps::accept() {

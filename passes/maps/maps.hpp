@@ -5,6 +5,7 @@
 
 #include "compute/manylods/manylods.hpp"
 #include "passes/brute/brute.hpp"
+#include "passes/ism/ism.hpp"
 #include "passes/splat/splat.hpp"
 
 namespace myriad::passes {
@@ -13,6 +14,7 @@ namespace myriad::passes {
 enum class MapMethod {
     manylods,  // each view's cut through the BSH, splatted
     brute,     // all triangles, rasterised
+    ism,       // few points of the surface, others in each view, and holes filled
 };
 
 struct MapSettings {
@@ -20,12 +22,14 @@ struct MapSettings {
     uint32_t map_size = 32;   // texels a side of a half map
     float epsilon = 2;        // texels
     MapMethod method = MapMethod::manylods;
+    IsmSettings ism;
+    uint32_t seed = 1;        // ism
 };
 
 // What is drawn; a method needs but its own.
 struct MapScene {
     const compute::Bsh* tree = nullptr;   // manylods
-    const Geometry* geometry = nullptr;   // brute
+    const Geometry* geometry = nullptr;   // brute, ism
 };
 
 struct MapCounters {
@@ -41,9 +45,13 @@ class ViewMaps {
 public:
     // `multiple`: batches start at multiples of this. Throws InputError for a map size that the device cannot draw, OutOfMemory
     // when not even one batch of `multiple` views fits.
-    // `world`: the triangles, for brute; it need not outlive the call.
+    // `world`: the triangles, for brute and ism; `ism`: for ism; they need not outlive the call.
     ViewMaps(engine::Device& device, const MapSettings& settings, uint32_t max_views, uint32_t multiple,
-             const compute::WorldTriangles* world = nullptr);
+             const compute::WorldTriangles* world = nullptr, const IsmScene* ism = nullptr);
+
+    // What must be done when the scene has moved, and once before the first batch: ism's points; the others' inputs are the caller's.
+    void place(engine::Recorder& recorder, const MapScene& scene);
+
 
     // How many views go at once; can get smaller when accept() returns false.
     uint32_t batch() const { return batch_; }
@@ -75,6 +83,7 @@ private:
     std::optional<SplatPass> splat_;
     std::optional<compute::AppendLists> lists_;
     std::optional<BrutePass> brute_;
+    std::optional<IsmPass> ism_;
     engine::Array<uint> atlas_;
     MapCounters counters_;
 };

@@ -1,0 +1,26 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// One invocation a sample: where it stands.
+#include "engine/kernel.glsl"
+#include "compute/instances/instances.glsl"
+#include "compute/opacity/opacity.glsl"
+#include "passes/ism/ism_io.h"
+layout(constant_id = 2) const bool blends = false;  // some surface does
+layout(push_constant, scalar) uniform Push { IsmPointsPush push; };
+
+void main() {
+    const uint i = thread_index();
+    if (i >= push.count) return;
+    const SurfaceSample s = push.samples.at[i];
+    GeometryArrays g = push.geometry.at[0];
+    uint stored = s.triangle;
+    Instance instance;
+    if (instanced) {
+        instance = g.instances.at[find_instance(g.instances, g.instance_count, s.triangle)];
+        stored = instance.first_triangle + (s.triangle - instance.first_id);
+    }
+    const uvec4 t = g.triangles.at[stored];
+    Corners c = Corners(g.positions.at[t.x], g.positions.at[t.y], g.positions.at[t.z]);
+    if (instanced) c = instance_corners(instance, c);
+    push.points.at[i] = ism_point(c, s.u, s.v, blends ? opacity_missing_at(push.opacity, s.triangle, s.u, s.v) : 0u);
+}
