@@ -212,18 +212,21 @@ void find_bounds(Triangles& out, const std::vector<Placement>& placements) {
     if (out.count() > 0) out.lo = lo, out.hi = hi;
 }
 
-// Adds where moving vertices get while the clips play, looked at at so many moments. What a matrix moves stays in the box of it
+// Adds where moving vertices get while the clips play, looked at at some moments. What a matrix moves stays in the box of it
 // that the matrix moves, and a vertex between those of its matrices.
 void widen_bounds(const Scene& scene, Triangles& out) {
-    constexpr int moments = 128;
     const Motion& motion = out.motion;
+    const int moments = int(std::clamp<size_t>((4 << 20) / (scene.nodes.size() + motion.matrices.size() + 1), 8, 128));
     double duration = 0;
     for (const uint32_t clip : motion.playback.clips) duration = std::max(duration, scene.clips[clip].duration());
-    std::vector<Moment> at;
-    for (int i = 0; i <= moments; ++i) at.push_back(moment_at(scene, motion, duration * i / moments));
+    const auto each_moment = [&](auto action) {
+        for (int i = 0; i <= moments; ++i) action(moment_at(scene, motion, duration * i / moments));
+    };
     std::vector<float> least(motion.weights.size()), most(least);
-    for (const Moment& moment : at)
-        for (size_t i = 0; i < least.size(); ++i) least[i] = std::min(least[i], moment.weights[i]), most[i] = std::max(most[i], moment.weights[i]);
+    if (!least.empty())
+        each_moment([&](const Moment& moment) {
+            for (size_t i = 0; i < least.size(); ++i) least[i] = std::min(least[i], moment.weights[i]), most[i] = std::max(most[i], moment.weights[i]);
+        });
     const glm::vec3 infinity(std::numeric_limits<float>::infinity());
     std::vector<glm::vec3> lo(motion.matrices.size(), infinity), hi(motion.matrices.size(), -infinity);
     for (uint32_t i = 0; i < motion.count(); ++i) {
@@ -239,13 +242,14 @@ void widen_bounds(const Scene& scene, Triangles& out) {
             lo[m] = glm::min(lo[m], low), hi[m] = glm::max(hi[m], high);
         }
     }
-    for (const Moment& moment : at)
+    each_moment([&](const Moment& moment) {
         for (size_t m = 0; m < lo.size(); ++m)
             for (int corner = 0; corner < 8 && lo[m].x <= hi[m].x; ++corner) {
                 const glm::vec3 p(corner & 1 ? hi[m].x : lo[m].x, corner & 2 ? hi[m].y : lo[m].y, corner & 4 ? hi[m].z : lo[m].z);
                 const glm::vec3 world = settled_point(affine_point(moment.matrices[m], p));
                 out.lo = glm::min(out.lo, world), out.hi = glm::max(out.hi, world);
             }
+    });
 }
 
 }  // namespace

@@ -8,10 +8,12 @@
 
 #include "engine/error.hpp"
 #include "scenes/gltf/accessor.hpp"
+#include "scenes/gltf/animation.hpp"
 #include "scenes/gltf/container.hpp"
 #include "scenes/gltf/material.hpp"
 #include "scenes/gltf/mesh.hpp"
 #include "scenes/gltf/nodes.hpp"
+#include "scenes/gltf/skin.hpp"
 
 namespace myriad::scenes {
 namespace {
@@ -60,12 +62,13 @@ Scene load_gltf(const std::string& path, const std::string& choice) try {
     const Place place{model, path, "", &document};
     check_extensions(place, scene);
     const int which = gltf::pick_scene(place, choice);
-    gltf::read_nodes(place, which, scene);  // first: what no instance shows is not read
+    const gltf::Hierarchy hierarchy = gltf::read_nodes(place, which, scene);  // first: what no instance shows is not read
     gltf::read_background(place, which, scene);
     gltf::read_meshes(place, scene);
     gltf::read_materials(place, scene);
-    if (!model.skins.empty()) scene.warnings.push_back("skins are ignored: meshes are shown in their rest pose.");
-    if (!model.animations.empty()) scene.warnings.push_back("animations are ignored.");
+    gltf::read_skins(place, hierarchy, scene);
+    gltf::read_animations(place, hierarchy, scene);
+    gltf::prune_nodes(scene);
     return scene;
 } catch (const std::bad_alloc&) {
     throw OutOfMemory(path + ": the scene does not fit in memory; make it smaller.");

@@ -47,6 +47,11 @@ void play(const Clip& clip, double seconds, std::vector<Transform>& transforms, 
     }
 }
 
+// Matrices beyond this, and weights beyond a million, would leave what floats can be computed with.
+bool computable(const glm::dmat4& m) {
+    return sane(m) && std::all_of(glm::value_ptr(m), glm::value_ptr(m) + 16, [](double x) { return std::abs(x) <= 1e18; });
+}
+
 Affine narrow(const glm::dmat4& m) { return {glm::vec3(m[0]), glm::vec3(m[1]), glm::vec3(m[2]), glm::vec3(m[3])}; }
 
 }  // namespace
@@ -97,13 +102,13 @@ Moment moment_at(const Scene& scene, const Motion& motion, double seconds) {
     moment.matrices.reserve(motion.matrices.size());
     for (const auto& [node, bind] : motion.matrices) {
         const glm::dmat4 matrix = pose.worlds[node] * bind;
-        if (!sane(matrix))
+        if (!computable(matrix))
             throw InputError(scene.name + ": at " + std::to_string(seconds) + " s node \"" + scene.nodes[node].name.substr(0, 100) +
-                             "\" is beyond 1e9 m or its transform is not finite; correct its animation, or leave it out.");
+                             "\" is beyond 1e9 m or its transform is not a sensible one; correct its animation, or leave it out.");
         moment.matrices.push_back(narrow(matrix));
     }
     moment.weights.reserve(motion.weights.size());
-    for (const auto& [node, target] : motion.weights) moment.weights.push_back(pose.weights[node][target]);
+    for (const auto& [node, target] : motion.weights) moment.weights.push_back(std::clamp(pose.weights[node][target], -1e6f, 1e6f));
     // Where nothing of a light or a camera is left, it stays where it was at rest.
     for (Light& light : moment.lights)
         if (light.node != none) place_light(light, pose.worlds[light.node]);

@@ -46,6 +46,10 @@ bool sane(const glm::dmat4& to_world);
 bool place_camera(Camera& camera, const glm::dmat4& to_world);
 bool place_light(Light& light, const glm::dmat4& to_world);
 
+// Of scene.cameras, by a name or an index in decimal as pick_camera() takes them; empty: the first, or `none` when there is none.
+// Throws InputError naming the cameras that exist.
+uint32_t find_camera(const Scene& scene, const std::string& name);
+
 // A clip by its name or its index in decimal; "all": every one. Throws InputError naming those that there are.
 Playback pick_clips(const Scene& scene, const std::string& name, bool loop = true);
 

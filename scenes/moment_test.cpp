@@ -47,7 +47,7 @@ Scene bar() {
             p.joint_weights[0].emplace_back(y < 2 ? 1 : y > 2 ? 0 : 0.5f, y < 2 ? 0 : y > 2 ? 1 : 0.5f, 0, 0);
         }
     for (uint32_t i = 0; i < 8; i += 2) p.indices.insert(p.indices.end(), {i, i + 1, i + 3, i, i + 3, i + 2});
-    scene.meshes.push_back({"bar", {p}, {}});
+    scene.meshes.push_back({"bar", {p}});
     scene.nodes = {{.name = "lower"}, {.name = "upper", .parent = 0, .rest = {.translation = {0, 2, 0}}}, {.name = "mesh"}};
     glm::mat4 inverse(1);
     inverse[3].y = -2;
@@ -63,7 +63,7 @@ void add_wall(Scene& scene) {
     p.positions = {{9, 0, 0}, {10, 0, 0}, {10, 1, 0}, {9, 1, 0}};
     p.normals.assign(4, {0, 0, 1});
     p.indices = {0, 1, 2, 0, 2, 3};
-    scene.meshes.push_back({"wall", {p}, {}});
+    scene.meshes.push_back({"wall", {p}});
     scene.instances.push_back({uint32_t(scene.meshes.size()) - 1, glm::mat4(1)});
 }
 
@@ -150,7 +150,7 @@ Scene cube() {
         p.targets[1].positions.push_back(v.y > 0 ? vec3(2 * v.x, 0, 2 * v.z) : vec3(0));
     }
     p.indices = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6};
-    scene.meshes.push_back({"cube", {p}, {0, 0}});
+    scene.meshes.push_back({"cube", {p}});
     scene.nodes = {{.name = "cube", .rest = {.translation = {10, 0, 0}}, .weights = {0, 0}}};
     scene.instances.push_back({.mesh = 0, .node = 0});
     scene.instances[0].to_world[3].x = 10;
@@ -185,7 +185,7 @@ TEST(Moment, FlatNormalsFollowTheShape) {
     p.indices = {0, 1, 2};
     p.targets.resize(1);
     p.targets[0].positions = {{0, 0, 0}, {0, 0, 0}, {0, 0, 1}};
-    scene.meshes.push_back({"leaf", {p}, {0}});
+    scene.meshes.push_back({"leaf", {p}});
     scene.nodes = {{.weights = {0}}};
     scene.instances.push_back({.mesh = 0, .node = 0});
     scene.clips.push_back({"", {Track{.width = 1, .times = {0, 1}, .values = {0, 1}}}, {{0, 0, Path::weights}}});
@@ -203,7 +203,7 @@ TEST(Moment, NormalsGoByTheInverseTranspose) {
     p.normals.assign(3, glm::normalize(vec3(-1, 1, 0)));
     p.tangents.assign(3, glm::vec4(glm::normalize(vec3(1, 1, 0)), 1));
     p.indices = {0, 1, 2};
-    scene.meshes.push_back({"plane", {p}, {}});
+    scene.meshes.push_back({"plane", {p}});
     scene.nodes = {{.name = "plane"}};
     scene.instances.push_back({.mesh = 0, .node = 0});
     scene.clips.push_back({"", {Track{.width = 3, .times = {0, 1, 2}, .values = {1, 1, 1, 1, 4, 1, -1, 4, 1}}}, {{0, 0, Path::scale}}});

@@ -8,6 +8,7 @@
 #include "engine/error.hpp"
 #include "scenes/builtin.hpp"
 #include "scenes/gltf.hpp"
+#include "scenes/moment.hpp"
 
 namespace myriad::scenes {
 namespace {
@@ -35,18 +36,23 @@ Camera framing_camera(const Triangles& triangles) {
     return camera;
 }
 
-Camera pick_camera(const Scene& scene, const Triangles& triangles, const std::string& name) {
-    if (name.empty()) return scene.cameras.empty() ? framing_camera(triangles) : scene.cameras[0];
-    for (const auto& camera : scene.cameras)
-        if (camera.name == name) return camera;
+uint32_t find_camera(const Scene& scene, const std::string& name) {
+    if (name.empty()) return scene.cameras.empty() ? none : 0;
+    for (uint32_t i = 0; i < scene.cameras.size(); ++i)
+        if (scene.cameras[i].name == name) return i;
     const bool digits = name.size() <= 9 && std::all_of(name.begin(), name.end(), [](char c) { return c >= '0' && c <= '9'; });
-    if (digits && std::stoul(name) < scene.cameras.size()) return scene.cameras[std::stoul(name)];
+    if (digits && std::stoul(name) < scene.cameras.size()) return uint32_t(std::stoul(name));
     if (scene.cameras.empty())
         throw InputError(scene.name + ": there is no camera \"" + name + "\", for the scene has none; leave the camera out.");
     std::string known;
     for (size_t i = 0; i < scene.cameras.size(); ++i)
         known += (i ? ", " : "") + std::to_string(i) + " \"" + scene.cameras[i].name + "\"";
     throw InputError(scene.name + ": there is no camera \"" + name + "\"; known: " + known + ".");
+}
+
+Camera pick_camera(const Scene& scene, const Triangles& triangles, const std::string& name) {
+    const uint32_t index = find_camera(scene, name);
+    return index == none ? framing_camera(triangles) : scene.cameras[index];
 }
 
 Scene load(const std::string& source, uint32_t seed) {

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <fstream>
 #include <thread>
 
 #include <nlohmann/json.hpp>
@@ -42,7 +43,7 @@ TEST_F(command_line, help_names_every_option) {
         {"render", {"SCENE",     "--output",   "--png",  "--size",    "--camera",  "--seed",    "--visibility", "--append",
                     "--vpls",    "--bounces",  "--map-size",          "--epsilon", "--samples", "--gather",     "--filter",
                     "--vpl-bound", "--bias",   "--exposure",          "--memory-limit",         "--stats",      "--trace",
-                    "--aov",     "--cache",  "--instances",         "--sky",     "--device",   "--repeat", "--float", "--quiet",   "1:1",       "builtin:cornell", "W/sr"}},
+                    "--aov",     "--cache",  "--instances",         "--sky",     "--device",   "--repeat", "--float", "--animation", "--time", "--frames", "--fps", "--loop", "--camera-path", "--quiet",   "1:1",       "builtin:cornell", "W/sr"}},
         {"compare", {"REF", "TEST", "--json", "--fail-above", "--fail-below", "--layer", "--diff", "--tolerance"}},
         {"bench", {"--json"}},
         {"convert", {"IN", "OUT", "--unit", "--up", "--crease", "--colors", "--seed", "--quiet", ".gltf", ".glb", ".obj", ".ply.gz", ".stl", ".fbx", ".dae", ".json", "builtin:NAME"}},
@@ -72,7 +73,7 @@ TEST_F(command_line, bad_usage) {
     refuse(2, {"render", "-o", exr}, "SCENE is required; see myriad render -h");
     refuse(2, tiny + Arguments{"-o", exr, "--paint"}, "--paint; see myriad render -h");
     refuse(2, tiny + Arguments{"-o", exr, "--visibility", "megaviews"}, "manylods, rays, none");
-    for (const char* later : {"--update", "--env", "--coverage", "--camera-path", "--frames", "--primary", "--time-budget", "--target-error"})
+    for (const char* later : {"--update", "--env", "--coverage", "--primary", "--time-budget", "--target-error"})
         refuse(2, tiny + Arguments{"-o", exr, later, "1"}, later);  // options of the spec that are yet to come
     refuse(2, tiny + Arguments{"-o", exr, "-o", folder / "b.exr"}, "--output is given more than once");
     refuse(2, tiny + Arguments{"-o"}, "--output");
@@ -210,6 +211,79 @@ TEST_F(command_line, repeats_are_all_counted) {
     succeed(tiny + Arguments{"-o", exr, "--repeat", "3", "--stats", folder / "s.json"});
     EXPECT_TRUE(contains(last.out, "medians of 3 frames")) << last.out;
     EXPECT_EQ(nlohmann::json::parse(bytes_of(folder / "s.json"))["frames"].size(), 3u);
+}
+
+// A square of 2 m that shines, 3 m before the first camera; its clip "rise" lifts it out of the picture within a second.
+std::string moving_scene(const TempFolder& folder) {
+    const float numbers[] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, -1, 0, 1, 1, 0, -1, 1, 0, 0, 1, 0, 0, 0, 0, 8, 0};
+    std::ofstream(folder / "numbers.bin", std::ios::binary).write(reinterpret_cast<const char*>(numbers), sizeof numbers);
+    std::ofstream(folder / "moving.gltf") << R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
+        "nodes": [{"name": "sign", "mesh": 0}, {"name": "front", "camera": 0, "translation": [0, 0, 3]}],
+        "cameras": [{"type": "perspective", "perspective": {"yfov": 0.8, "znear": 0.1}}],
+        "materials": [{"emissiveFactor": [1, 1, 1]}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+        "buffers": [{"uri": "numbers.bin", "byteLength": 104}],
+        "bufferViews": [{"buffer": 0, "byteLength": 72}, {"buffer": 0, "byteOffset": 72, "byteLength": 8}, {"buffer": 0, "byteOffset": 80, "byteLength": 24}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 6, "min": [-1, -1, 0], "max": [1, 1, 0]},
+                      {"bufferView": 1, "componentType": 5126, "type": "SCALAR", "count": 2, "min": [0], "max": [1]},
+                      {"bufferView": 2, "componentType": 5126, "type": "VEC3", "count": 2}],
+        "animations": [{"name": "rise", "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}], "samplers": [{"input": 1, "output": 2}]}]})";
+    return folder / "moving.gltf";
+}
+
+double mean(const std::string& path) {
+    const Image image = read_exr(path);
+    double sum = 0;
+    for (size_t i = 0; i < image.pixels(); ++i) sum += double(image.rgb()->r[i]);
+    return sum / double(image.pixels());
+}
+
+TEST_F(command_line, frames_are_moments) {
+    TempFolder input;
+    const Arguments render = {"render", moving_scene(input), "--size", "16x16", "--vpls", "64", "--samples", "8", "--sky", "off", "-q"};
+    succeed(render + Arguments{"-o", exr, "--frames", "0-2", "--fps", "4", "--stats", folder / "s.json"});
+    EXPECT_EQ(folder.names(), (Arguments{"a.0000.exr", "a.0001.exr", "a.0002.exr", "s.json"}));
+    EXPECT_GT(mean(folder / "a.0000.exr"), 0.5) << "the sign is there";
+    EXPECT_EQ(mean(folder / "a.0002.exr"), 0) << "4 m up it is not";
+    const auto frames = nlohmann::json::parse(bytes_of(folder / "s.json"))["frames"];
+    ASSERT_EQ(frames.size(), 3u);
+    EXPECT_EQ(frames[1]["frame"], 1);
+    EXPECT_EQ(frames[1]["seconds"], 0.25);
+    // A moment is the same alone, in a sequence, a loop later, and by the clip's name; but for the metadata of the files.
+    const auto same = [&](const Arguments& how, const char* frame) {
+        succeed(render + Arguments{"-o", exr} + how);
+        const auto a = read_exr(exr), b = read_exr(folder / frame);
+        for (size_t i = 0; i < a.pixels(); ++i) ASSERT_EQ(a.rgb()->r[i], b.rgb()->r[i]) << testing::PrintToString(how) << " pixel " << i;
+    };
+    same({"--time", "0.25"}, "a.0001.exr");
+    same({"--time", "1.25", "--animation", "rise"}, "a.0001.exr");
+    same({"--time", "7", "--loop", "off"}, "a.0002.exr");
+    same({}, "a.0000.exr");
+}
+
+TEST_F(command_line, cameras_go_their_ways) {
+    TempFolder input;
+    std::ofstream(input / "way.json") << R"({"camera_path": 1, "keys": [{"time": 0, "eye": [0, 0, 3], "target": [0, 0, 0]}, {"time": 1, "eye": [0, 0, 3], "target": [0, 9, 0]}]})";
+    const Arguments render = {"render", moving_scene(input), "--size", "16x16", "--vpls", "0", "--sky", "off", "-q", "--camera-path", input / "way.json"};
+    succeed(render + Arguments{"-o", exr, "--frames", "0-1", "--fps", "1", "--animation", "0"});
+    EXPECT_GT(mean(folder / "a.0000.exr"), 0.5);
+    EXPECT_EQ(mean(folder / "a.0001.exr"), 0);
+}
+
+TEST_F(command_line, moments_that_make_no_sense) {
+    TempFolder input;
+    const std::string scene = moving_scene(input);
+    const Arguments still = tiny + Arguments{"-o", exr}, moving = {"render", scene, "-o", exr};
+    refuse(2, still + Arguments{"--frames", "0-3"}, "the scene has no animation");
+    refuse(2, still + Arguments{"--animation", "0"}, "there is no animation \"0\"");
+    refuse(2, moving + Arguments{"--animation", "fall"}, "0 \"rise\"");
+    refuse(2, moving + Arguments{"--time", "1", "--frames", "0-3"}, "--time and --frames");
+    refuse(2, moving + Arguments{"--frames", "3-0"}, "--frames '3-0'");
+    refuse(2, moving + Arguments{"--frames", "0-1", "--repeat", "2"}, "--repeat");
+    refuse(2, moving + Arguments{"--time", "soon"}, "--time 'soon'");
+    refuse(2, moving + Arguments{"--fps", "0", "--frames", "0-1"}, "--fps '0'");
+    refuse(2, moving + Arguments{"--camera-path", input / "none.json", "--time", "0"}, "none.json");
+    refuse(2, moving + Arguments{"--camera-path", input / "way.json"}, "which moment");
+    refuse(2, moving + Arguments{"--camera-path", input / "way.json", "--camera", "0", "--time", "0"}, "--camera and --camera-path");
 }
 
 TEST_F(command_line, the_same_render_gives_the_same_bytes) {

@@ -42,6 +42,21 @@ std::pair<uint32_t, uint32_t> parse_size(const std::string& option, const std::s
     refuse(option, text, "give WIDTHxHEIGHT in pixels, each from 1 to " + std::to_string(max_side) + ", such as 640x360");
 }
 
+double parse_seconds(const std::string& option, const std::string& text) {
+    double value = 0;
+    if (read(text, value) && std::abs(value) <= 1e6) return value;
+    refuse(option, text, "give seconds, from -1e6 to 1e6");
+}
+
+std::pair<uint32_t, uint32_t> parse_frames(const std::string& option, const std::string& text) {
+    constexpr uint32_t most = 999999;
+    const size_t dash = std::min(text.find('-'), text.size());
+    uint32_t first = 0, last = 0;
+    if (read(text.substr(0, dash), first) && read(dash < text.size() ? text.substr(dash + 1) : text, last) && first <= last && last <= most)
+        return {first, last};
+    refuse(option, text, "give FIRST-LAST, numbers from 0 to " + std::to_string(most) + ", such as 0-47");
+}
+
 uint32_t parse_gather(const std::string& option, const std::string& text) {
     constexpr std::string_view prefix = "subset:";
     uint32_t subset = 0;

@@ -18,6 +18,9 @@ float parse_number(const std::string& option, const std::string& text, float lea
 // "640x360"; each side from 1 to max_side.
 std::pair<uint32_t, uint32_t> parse_size(const std::string& option, const std::string& text);
 constexpr uint32_t max_side = 16384;
+double parse_seconds(const std::string& option, const std::string& text);  // any finite number up to 1e6, either sign
+// "A-B", or "A" for one: numbers of frames, A <= B < 10^6.
+std::pair<uint32_t, uint32_t> parse_frames(const std::string& option, const std::string& text);
 // "all" is 0, "subset:K" is K, from 1 on.
 uint32_t parse_gather(const std::string& option, const std::string& text);
 std::string show_gather(uint32_t subset);

@@ -5,7 +5,8 @@
 #include <memory>
 #include <optional>
 
-#include "scenes/scene.hpp"
+#include "scenes/camera_path.hpp"
+#include "scenes/moment.hpp"
 #include "tools/commands.hpp"
 #include "tools/exposure.hpp"
 #include "tools/exr.hpp"
@@ -23,29 +24,43 @@ namespace {
 struct Loaded {
     scenes::Scene scene;
     scenes::Triangles triangles;
-    scenes::Camera camera;
+    uint32_t camera = scenes::none;  // of scene.cameras; none: one that sees all
+    std::optional<scenes::CameraPath> path;
 };
 
 Loaded load(const RenderOptions& options, Progress& progress) {
     Loaded loaded;
+    if (!options.camera_path.empty()) loaded.path.emplace(options.camera_path);
     loaded.scene = scenes::load(options.scene);
     scenes::apply_sky(loaded.scene, options.sky);
-    loaded.triangles = scenes::flatten(loaded.scene, options.instances);
-    loaded.camera = scenes::pick_camera(loaded.scene, loaded.triangles, options.camera);
+    scenes::Playback playback{.loop = options.loop};
+    if (!options.animation.empty()) playback = scenes::pick_clips(loaded.scene, options.animation, options.loop);
+    else if (options.moves() && !loaded.scene.clips.empty()) playback.clips = {0};
+    if (options.moves() && playback.clips.empty() && !loaded.path)
+        throw InputError(options.scene + ": the scene has no animation, so all moments are the same; leave --time and --frames out, or give a --camera-path");
+    loaded.triangles = scenes::flatten(loaded.scene, options.instances, playback);
+    if (!loaded.path) loaded.camera = scenes::find_camera(loaded.scene, options.camera);
     progress.clear();
     for (const std::string& warning : loaded.scene.warnings) say("warning", warning);
     return loaded;
 }
 
-FrameRun render_frame(const RunRecord& run, engine::Device& device, passes::Frame& frame, const scenes::Camera& camera) {
-    FrameRun result;
-    result.host = {"frame " + std::to_string(run.frames.size()), run.now_ms(), 0};
-    frame.render(camera);
-    result.host.ms = run.now_ms() - result.host.begin_ms;
-    result.passes = frame.times();
-    result.counters = frame.counters();
-    for (const auto& [kind, use] : device.memory()) result.peak_bytes[kind] = use.peak;
-    return result;
+std::string camera_name(const Loaded& loaded) {
+    if (loaded.path) return loaded.path->at(0).name;
+    return loaded.camera == scenes::none ? "(all in view)" : loaded.scene.cameras[loaded.camera].name;
+}
+
+// What is rendered: moments, and how often each. Without a number it is one image.
+struct Shot {
+    std::optional<uint32_t> number;
+    std::optional<double> seconds;  // absent: the scene is at rest
+};
+
+std::vector<Shot> shots(const RenderOptions& options) {
+    if (!options.frames) return std::vector<Shot>(options.repeat, {{}, options.moves() ? std::optional(options.time.value_or(0)) : std::nullopt});
+    std::vector<Shot> out;
+    for (uint32_t i = options.frames->first; i <= options.frames->second; ++i) out.push_back({i, double(i) / options.fps});
+    return out;
 }
 
 Picture to_picture(const std::vector<uint>& rgba, const Image& image) {
@@ -56,16 +71,19 @@ Picture to_picture(const std::vector<uint>& rgba, const Image& image) {
     return picture;
 }
 
-void write_images(const RenderOptions& options, RunRecord& run, Image& image, passes::Frame& frame) {
+// The exposure that is found for the first image is that of all: a film must not flicker.
+void write_images(const RenderOptions& options, RunRecord& run, Image& image, passes::Frame& frame, std::optional<uint32_t> number) {
     if (!options.png.empty()) {
-        run.exposure = options.exposure ? *options.exposure : auto_exposure(*image.rgb());
-        write_png(options.png, to_picture(frame.tonemapped(static_cast<float>(*run.exposure)), image));
-        run.files.push_back(options.png);
+        if (!run.exposure) run.exposure = options.exposure ? *options.exposure : auto_exposure(*image.rgb());
+        const std::string path = numbered(options.png, number);
+        write_png(path, to_picture(frame.tonemapped(static_cast<float>(*run.exposure)), image));
+        run.files.push_back(path);
     }
     if (!options.exr.empty()) {
+        const std::string path = numbered(options.exr, number);
         image.metadata = image_metadata(run);
-        write_exr(options.exr, image, options.full_floats ? ExrColour::full : ExrColour::half);
-        run.files.push_back(options.exr);
+        write_exr(path, image, options.full_floats ? ExrColour::full : ExrColour::half);
+        run.files.push_back(path);
     }
 }
 
@@ -73,6 +91,98 @@ void write_reports(const RenderOptions& options, RunRecord& run) {
     if (!options.stats.empty()) write_text(options.stats, stats_json(run)), run.files.push_back(options.stats);
     if (!options.trace.empty()) write_text(options.trace, trace_json(run)), run.files.push_back(options.trace);
 }
+
+// Renders one shot after the other.
+class Film {
+public:
+    Film(const RenderOptions& options, RunRecord& run, engine::Device& device, Loaded& loaded, Progress& progress)
+        : options_(options), run_(run), device_(device), loaded_(loaded), progress_(progress), settings_(options.frame), shots_(shots(options)) {
+        settings_.progress = [this](const std::string& stage, double done) {
+            const std::string which = "frame " + std::to_string(run_.frames.size() + 1) + " of " + std::to_string(shots_.size());
+            progress_.show(shots_.size() > 1 ? which + ": " + stage : stage, done);
+        };
+        const bool still = loaded.triangles.motion.count() == 0;  // what is derived of triangles at one moment is no use at another
+        if (!options.cache.empty() && still) settings_.cache = &cache_.emplace(options.cache);
+    }
+
+    void make() {
+        for (const Shot& shot : shots_) {
+            const scenes::Camera camera = prepare(shot);
+            run_.frames.push_back(render(shot, camera));
+            if (shot.number || run_.frames.size() == shots_.size()) write(shot);
+        }
+    }
+
+private:
+    // Sets the scene for the shot.
+    scenes::Camera prepare(const Shot& shot) {
+        const bool moves = loaded_.triangles.motion.plays() && moment_ != shot.seconds;
+        if (moves) {
+            const scenes::Moment moment = scenes::moment_at(loaded_.scene, loaded_.triangles.motion, *shot.seconds);
+            scenes::deform(loaded_.triangles, moment);
+            loaded_.scene.lights = moment.lights, loaded_.scene.cameras = moment.cameras;
+            moment_ = shot.seconds;
+        }
+        if (!frame_) first();
+        else if (moves) run_.phase("frame " + std::to_string(shot.number.value_or(0)) + ": build", [&] { build(); });
+        if (loaded_.path) return loaded_.path->at(*shot.seconds);
+        return loaded_.camera == scenes::none ? scenes::framing_camera(loaded_.triangles) : loaded_.scene.cameras[loaded_.camera];
+    }
+
+    void build() {
+        frame_.reset();  // before the next is made: two may not fit
+        run_.recorder_ms = run_.now_ms();  // the recorder is the first thing that a frame makes
+        frame_ = std::make_unique<passes::Frame>(device_, loaded_.scene, loaded_.triangles, settings_);
+    }
+
+    void first() {
+        progress_.show("building", 0);
+        run_.phase("build", [&] { build(); });
+        run_.build = frame_->build_steps();
+        if (cache_) run_.cache = CacheUse{cache_->found(), cache_->missing(), cache_->damaged()};
+        if (cache_ && !cache_->problem().empty()) progress_.clear(), say("warning", cache_->problem());
+        run_.size = frame_->size();
+    }
+
+    FrameRun render(const Shot& shot, const scenes::Camera& camera) {
+        FrameRun result;
+        result.host = {"frame " + std::to_string(shot.number.value_or(uint32_t(run_.frames.size()))), run_.now_ms(), 0};
+        result.number = shot.number, result.seconds = shot.seconds;
+        frame_->render(camera);
+        result.host.ms = run_.now_ms() - result.host.begin_ms;
+        result.passes = frame_->times();
+        result.counters = frame_->counters();
+        for (const auto& [kind, use] : device_.memory()) result.peak_bytes[kind] = use.peak;
+        return result;
+    }
+
+    void write(const Shot& shot) {
+        progress_.show("writing", 0);
+        run_.settings = settings_json(settings_, frame_->vpl_bound());
+        run_.settings["sky"] = choice_name(sky_choices(), options_.sky);
+        if (shot.number) run_.settings["frame"] = *shot.number;
+        if (shot.seconds) run_.settings["seconds"] = *shot.seconds;
+        if (const auto& clips = loaded_.triangles.motion.playback.clips; !clips.empty()) {
+            std::string names;
+            for (const uint32_t clip : clips) names += (names.empty() ? "" : ", ") + loaded_.scene.clips[clip].name;
+            run_.settings["animation"] = names, run_.settings["loop"] = options_.loop;
+        }
+        Image image = read_image(device_, *frame_, options_.layers);
+        require_finite(image);
+        run_.phase(shot.number ? "frame " + std::to_string(*shot.number) + ": write" : "write", [&] { write_images(options_, run_, image, *frame_, shot.number); });
+    }
+
+    const RenderOptions& options_;
+    RunRecord& run_;
+    engine::Device& device_;
+    Loaded& loaded_;
+    Progress& progress_;
+    passes::FrameSettings settings_;
+    const std::vector<Shot> shots_;
+    std::optional<engine::Cache> cache_;
+    std::unique_ptr<passes::Frame> frame_;
+    std::optional<double> moment_;  // at which the scene stands, of those who move
+};
 
 void render(const RenderOptions& options) {
     check_outputs(options);
@@ -82,33 +192,11 @@ void render(const RenderOptions& options) {
     run.device = device->info();
 
     progress.show("loading " + options.scene, 0);
-    const Loaded loaded = run.phase("load", [&] { return load(options, progress); });
+    Loaded loaded = run.phase("load", [&] { return load(options, progress); });
     run.scene = loaded.scene.name;
-    run.camera = loaded.scene.cameras.empty() ? "(all in view)" : loaded.camera.name;
+    run.camera = camera_name(loaded);
 
-    passes::FrameSettings settings = options.frame;
-    uint32_t number = 0;
-    settings.progress = [&](const std::string& stage, double done) {
-        progress.show(options.repeat > 1 && number ? "frame " + std::to_string(number) + ": " + stage : stage, done);
-    };
-    std::optional<engine::Cache> cache;
-    if (!options.cache.empty()) settings.cache = &cache.emplace(options.cache);
-    progress.show("building", 0);
-    run.recorder_ms = run.now_ms();  // the recorder is the first thing that a frame makes
-    const auto frame = run.phase("build", [&] { return std::make_unique<passes::Frame>(*device, loaded.scene, loaded.triangles, settings); });
-    run.build = frame->build_steps();
-    if (cache) run.cache = CacheUse{cache->found(), cache->missing(), cache->damaged()};
-    if (cache && !cache->problem().empty()) progress.clear(), say("warning", cache->problem());
-    run.size = frame->size();
-    run.settings = settings_json(settings, frame->vpl_bound());
-    run.settings["sky"] = choice_name(sky_choices(), options.sky);
-
-    while (number++ < options.repeat) run.frames.push_back(render_frame(run, *device, *frame, loaded.camera));
-
-    progress.show("writing", 0);
-    Image image = read_image(*device, *frame, options.layers);
-    require_finite(image);
-    run.phase("write", [&] { write_images(options, run, image, *frame); });
+    Film(options, run, *device, loaded, progress).make();
     write_reports(options, run);
     progress.clear();
     if (!options.quiet) std::fputs(stats_table(run).c_str(), stdout);

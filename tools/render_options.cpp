@@ -62,6 +62,19 @@ void add_technique(CLI::App& command, passes::FrameSettings& s) {
     add_whole(command, "--seed", s.seed, 0, ~0u, "of the VPLs and the points; the scene does not depend on it");
 }
 
+void add_movement(CLI::App& command, RenderOptions& o) {
+    command.add_option("--animation", o.animation, "of the scene: the clip that plays, or all of them at once; unless given the first, where a time is,\n"
+                       "and none where no time is: then the scene is at rest")->type_name("NAME|INDEX|all");
+    add_parsed(command, "--time", "S", "", "the moment to render, in seconds; 0 with --animation", [&o](const std::string& text) { o.time = parse_seconds("--time", text); });
+    add_parsed(command, "--frames", "A-B", "", "frames A to B, frame i at i / fps seconds; FILE.exr becomes FILE.0000.exr and so on",
+               [&o](const std::string& text) { o.frames = parse_frames("--frames", text); });
+    add_parsed(command, "--fps", "N", "24", "frames a second", [&o](const std::string& text) {
+        o.fps = double(parse_number("--fps", text, 0.001f, 100000));
+    });
+    add_choice(command, "--loop", o.loop, {{"on", true}, {"off", false}}, "clips begin again at their ends, or stay there");
+    command.add_option("--camera-path", o.camera_path, "the camera's way, in place of the scene's cameras: JSON, see scenes/README.md")->type_name("FILE");
+}
+
 const char* const footer =
     "Lengths are in metres. glTF's photometric units are taken as radiometric 1:1: point and spot intensity in W/sr,\n"
     "directional irradiance in W/m^2; emission is radiance. Light that comes straight from emitting surfaces counts as\n"
@@ -109,6 +122,7 @@ std::shared_ptr<RenderOptions> add_render_options(CLI::App& command) {
                [&o](const std::string& text) { std::tie(o.frame.width, o.frame.height) = parse_size("--size", text); });
     command.add_option("--camera", o.camera, "of the scene; the first unless given, and one that sees all where there is none")
         ->type_name("NAME|INDEX");
+    add_movement(command, o);
     add_choice(command, "--sky", o.sky, sky_choices(),
                "light from above, of radiance 1, by " + std::to_string(scenes::default_sky_lights) +
                    " directional lights;\nauto: for a scene that has no light and no emission");
@@ -128,16 +142,29 @@ std::shared_ptr<RenderOptions> add_render_options(CLI::App& command) {
     return shared;
 }
 
+std::string numbered(const std::string& path, std::optional<uint32_t> number) {
+    if (!number || path.empty()) return path;
+    const std::string digits = std::to_string(*number);
+    const size_t ending = path.rfind('.');
+    return path.substr(0, ending) + "." + std::string(digits.size() < 4 ? 4 - digits.size() : 0, '0') + digits + path.substr(ending);
+}
+
 void check_outputs(const RenderOptions& o) {
     if (o.exr.empty() && o.png.empty()) throw InputError("no output is given; name one with -o FILE.exr or --png FILE.png");
     if (o.exr.empty() && !o.layers.empty()) throw InputError("--aov needs an EXR to put the layers in; name one with -o FILE.exr");
     if (o.png.empty() && o.exposure) throw InputError("--exposure needs a picture to apply to; name one with --png FILE.png");
+    if (o.time && o.frames) throw InputError("--time and --frames both say which moment to render; give one of them");
+    if (o.frames && o.repeat > 1) throw InputError("--frames renders a moment each, --repeat one moment again and again; give one of them");
+    if (!o.camera_path.empty() && !o.camera.empty()) throw InputError("--camera and --camera-path both say where to look from; give one of them");
+    if (!o.camera_path.empty() && !o.time && !o.frames) throw InputError("--camera-path is a way in time; say which moment with --time, or which with --frames");
+    std::optional<uint32_t> first;
+    if (o.frames) first = o.frames->first;
     std::set<std::filesystem::path> seen;
-    for (const std::string* path : {&o.exr, &o.png, &o.stats, &o.trace}) {
-        if (path->empty()) continue;
-        require_writable(*path);
-        if (!seen.insert(std::filesystem::absolute(*path).lexically_normal()).second)
-            throw InputError("'" + *path + "' is asked for twice; give each output its own name");
+    for (const std::string& path : {numbered(o.exr, first), numbered(o.png, first), o.stats, o.trace}) {
+        if (path.empty()) continue;
+        require_writable(path);
+        if (!seen.insert(std::filesystem::absolute(path).lexically_normal()).second)
+            throw InputError("'" + path + "' is asked for twice; give each output its own name");
     }
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "passes/frame.hpp"
@@ -24,6 +25,13 @@ struct RenderOptions {
     scenes::Sharing instances = scenes::Sharing::automatic;
     std::filesystem::path cache = engine::default_cache_folder();  // empty: none
     uint32_t repeat = 1;
+    std::string animation, camera_path;  // empty: none
+    bool loop = true;
+    std::optional<double> time;          // seconds; absent: the scene is at rest, unless `frames` says otherwise
+    std::optional<std::pair<uint32_t, uint32_t>> frames;  // first and last; frame i is i / fps seconds in
+    double fps = 24;
+
+    bool moves() const { return time || frames || !animation.empty(); }  // whether a moment is asked for at all
     bool full_floats = false, quiet = false;
 };
 
@@ -35,6 +43,9 @@ const std::vector<std::string>& layer_names();
 
 // Declares the options on `command`; they hold their values once it was parsed and check_outputs has returned.
 std::shared_ptr<RenderOptions> add_render_options(CLI::App& command);
+
+// `path` as frame `number` has it, where several are rendered: its number before the ending, four digits at least.
+std::string numbered(const std::string& path, std::optional<uint32_t> number);
 
 // InputError unless there is something to write and all of it can be written, each file under its own name.
 void check_outputs(const RenderOptions& options);

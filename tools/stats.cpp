@@ -151,7 +151,11 @@ std::string stats_json(const RunRecord& run) {
         ordered_json passes = ordered_json::array();
         for (const PassSum& sum : sum_passes(frame.passes))
             passes.push_back({{"name", sum.name}, {"gpu_ms", rounded(sum.gpu_ms)}, {"cpu_ms", rounded(sum.cpu_ms)}});
-        json["frames"].push_back({{"ms", rounded(frame.host.ms)}, {"passes", passes}, {"counters", counters_json(frame)}});
+        ordered_json row = ordered_json::object();
+        if (frame.number) row["frame"] = *frame.number;
+        if (frame.seconds) row["seconds"] = *frame.seconds;
+        row["ms"] = rounded(frame.host.ms), row["passes"] = passes, row["counters"] = counters_json(frame);
+        json["frames"].push_back(std::move(row));
     }
     if (run.exposure) json["exposure"] = *run.exposure;
     return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
@@ -179,7 +183,8 @@ std::string stats_table(const RunRecord& run) {
     std::vector<double> walls;
     for (const FrameRun& frame : run.frames) walls.push_back(frame.host.ms);
     if (!walls.empty()) text += format("frame %.0f ms", median(walls));
-    for (const HostPhase& phase : run.phases) text += format(", %s %.0f ms", phase.name.c_str(), phase.ms);
+    for (const HostPhase& phase : run.phases)
+        if (!phase.name.starts_with("frame ")) text += format(", %s %.0f ms", phase.name.c_str(), phase.ms);
     text += "\n";
     if (run.frames.empty()) return text;
     text += counters_text(run.frames.back());
@@ -187,7 +192,11 @@ std::string stats_table(const RunRecord& run) {
     for (const auto& [kind, bytes] : run.frames.back().peak_bytes) text += format(" %s %.1f", kind.c_str(), mebibytes(bytes));
     text += "\n";
     if (run.exposure) text += format("exposure %.6g\n", *run.exposure);
-    for (const std::string& file : run.files) text += "wrote " + file + "\n";
+    constexpr size_t most = 8;  // of a film the first and the last
+    for (size_t i = 0; i < run.files.size(); ++i) {
+        if (run.files.size() > most && i == most / 2) text += format("… and %zu more, up to\n", run.files.size() - most), i = run.files.size() - most / 2;
+        text += "wrote " + run.files[i] + "\n";
+    }
     return text;
 }
 

@@ -22,6 +22,8 @@ struct HostPhase {
 };
 
 struct FrameRun {
+    std::optional<uint32_t> number;            // absent: one image is made, whatever is repeated
+    std::optional<double> seconds;             // the moment; absent: the scene is at rest
     HostPhase host;                            // from the first recording to the last result
     std::vector<engine::PassTime> passes;      // as the recorder gives them
     passes::FrameCounters counters;

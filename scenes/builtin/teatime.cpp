@@ -94,6 +94,89 @@ private:
         carpet_ = textured(carpet(seed_ + 8), 0.9f);
     }
 
+    // ---- what the clip "tea" moves, in a round of 8 s
+
+    Clip& clip() {
+        if (scene_.clips.empty()) scene_.clips.push_back({.name = "tea"});
+        return scene_.clips[0];
+    }
+    void animate(uint32_t node, Path path, Track track) {
+        clip().channels.push_back({node, uint32_t(clip().tracks.size()), path});
+        clip().tracks.push_back(std::move(track));
+    }
+    // A node at `at`, from which the instance hangs as it stands.
+    uint32_t hang(const char* name, const mat4& at, Instance& instance) {
+        const uint32_t node = uint32_t(scene_.nodes.size());
+        scene_.nodes.push_back({.name = name, .rest = {.translation = glm::dvec3(at[3]), .rotation = glm::quat_cast(glm::dmat3(at))}});
+        scene_.nodes.push_back({.parent = node, .matrix = glm::inverse(scene_.nodes[node].rest.matrix()) * glm::dmat4(instance.to_world)});
+        instance.node = node + 1;
+        return node;
+    }
+
+    // About the vertical through `at`, once a round.
+    void turn_around(const mat4& at, Instance& instance) {
+        Track track{.interpolation = Track::Interpolation::linear, .width = 4};
+        for (int quarter = 0; quarter <= 4; ++quarter) {
+            const float half = float(quarter) * pi / 4;
+            track.times.push_back(2 * float(quarter));
+            track.values.insert(track.values.end(), {0, std::sin(half), 0, std::cos(half)});
+        }
+        animate(hang("turntable", at, instance), Path::rotation, std::move(track));
+    }
+
+    // In the cup at `cup`, four times a round: the bowl of the spoon goes in a circle, its handle leans over the rim. At rest it
+    // lies on the saucer.
+    void stir(const mat4& cup, Instance& spoon) {
+        constexpr float radius = 0.009f, seconds = 2, lean = glm::radians(65.0f);
+        const uint32_t seat = uint32_t(scene_.nodes.size());
+        scene_.nodes.push_back({.name = "cup", .matrix = glm::dmat4(cup)});
+        const glm::dmat4 lies = glm::inverse(glm::dmat4(cup)) * glm::dmat4(spoon.to_world);
+        scene_.nodes.push_back({.name = "spoon", .parent = seat, .rest = {.translation = glm::dvec3(lies[3]), .rotation = glm::quat_cast(glm::dmat3(lies))}});
+        spoon.node = seat + 1;
+        // Cubic pieces with the circle's own tangents are a circle, to a fortieth of a percent.
+        Track circle{.interpolation = Track::Interpolation::cubic, .width = 3}, leans;
+        for (int i = 0; i <= 32; ++i) {
+            const float angle = float(i) * pi / 4, speed = 2 * pi / seconds;
+            const vec3 at(radius * std::cos(angle), 0.034f, radius * std::sin(angle)), tangent = speed * vec3(-at.z, 0, at.x);
+            circle.times.push_back(float(i) * seconds / 8);
+            for (const vec3& v : {tangent, at, tangent}) circle.values.insert(circle.values.end(), {v.x, v.y, v.z});
+        }
+        leans = {.interpolation = Track::Interpolation::step, .width = 4, .times = {0}};
+        const glm::quat q = glm::angleAxis(-pi / 2, vec3(0, 1, 0)) * glm::angleAxis(lean, vec3(0, 0, 1));
+        leans.values = {q.x, q.y, q.z, q.w};
+        animate(spoon.node, Path::translation, std::move(circle));
+        animate(spoon.node, Path::rotation, std::move(leans));
+    }
+
+    // A breath of air from the windows: two morph targets, a wave and its quarter, whose weights go around, so that it travels.
+    void billow(Instance& curtains) {
+        Primitive& cloth = scene_.meshes[curtains.mesh].primitives[0];
+        cloth.targets.resize(2);
+        for (int k = 0; k < 2; ++k) {
+            // How far into the room, metres: nothing at the rod, most at the hem.
+            const auto out = [&](double y, double z) {
+                const double q = std::clamp((2.5 - y) / 2.5, 0.0, 1.0);
+                return 0.075 * q * q * std::sin(2.4 * y + 1.7 * z + k * double(pi) / 2);
+            };
+            for (size_t i = 0; i < cloth.positions.size(); ++i) {
+                const glm::dvec3 p(cloth.positions[i]);
+                constexpr double h = 1e-4;
+                const glm::dvec3 slope(0, (out(p.y + h, p.z) - out(p.y - h, p.z)) / (2 * h), (out(p.y, p.z + h) - out(p.y, p.z - h)) / (2 * h));
+                cloth.targets[size_t(k)].positions.emplace_back(out(p.y, p.z), 0, 0);
+                cloth.targets[size_t(k)].normals.push_back(glm::vec3(-slope * double(cloth.normals[i].x)));
+            }
+        }
+        curtains.node = uint32_t(scene_.nodes.size());
+        scene_.nodes.push_back({.name = "curtains", .weights = {0, 0}});
+        Track track{.interpolation = Track::Interpolation::linear, .width = 2};
+        for (int i = 0; i <= 64; ++i) {  // twice a round
+            const float angle = float(i) * pi / 16;
+            track.times.push_back(float(i) / 8);
+            track.values.insert(track.values.end(), {std::cos(angle), std::sin(angle)});
+        }
+        animate(curtains.node, Path::weights, std::move(track));
+    }
+
     uint32_t mesh(const char* name, std::vector<std::pair<uint32_t, Primitive>> parts) { return kit::add_mesh(scene_, name, std::move(parts)); }
     void place(uint32_t mesh, const mat4& at) { kit::add_instance(scene_, mesh, at); }
     uint32_t china(const char* name, China piece, uint32_t painted) { return mesh(name, {{painted, std::move(piece.painted)}, {china_, std::move(piece.plain)}}); }
@@ -212,7 +295,9 @@ private:
         scene_.materials[sheer].emissive = {2.6f, 2.4f, 2.05f};
         place(mesh("door", {{sheer, std::move(curtained)}}), mat4(1));
         const uint32_t chintz = plain("curtains", {0.74f, 0.66f, 0.50f}, 0.9f, true);
-        place(mesh("window wall", {{white_, std::move(shell)}, {white_, std::move(bars)}, {chintz, std::move(curtains)}, {brass_, std::move(rods)}}), mat4(1));
+        place(mesh("window wall", {{white_, std::move(shell)}, {white_, std::move(bars)}, {brass_, std::move(rods)}}), mat4(1));
+        place(mesh("curtains", {{chintz, std::move(curtains)}}), mat4(1));
+        billow(scene_.instances.back());
         place(mesh("garden", {{material, std::move(outside)}}), mat4(1));
     }
 
@@ -262,6 +347,7 @@ private:
         place(mesh("milk", {{milk_, std::move(milk)}}), on(0.065f, 0.235f));
         place(china("sugar bowl", std::move(bowl), cup_), on(0.175f, 0.175f, 35));
         place(china("cake stand", std::move(stand), rim_), on(0.10f, -0.13f, 15));
+        turn_around(moved({0.10f, 0, -0.13f}), scene_.instances.back());
         const mat4 tier_at = on(-0.30f, -0.135f, 0);
         place(mesh("tiered stand", {{rim_, std::move(tiers.painted)}, {china_, std::move(tiers.plain)}, {silver_, std::move(rod)}}), tier_at);
 
@@ -279,6 +365,7 @@ private:
             place(saucer_mesh, seat * moved({0.115f + shift, 0, 0.43f}));
             place(cup_mesh, seat * moved({0.115f + shift, 0.0038f, 0.43f}) * turned(random_.real(-60, 60)));
             place(spoon_mesh, seat * moved({0.163f + shift, 0.0068f, 0.432f}) * turned(78 + random_.real(-8, 8)) * glm::rotate(mat4(1), 0.03f, vec3(0, 0, 1)));
+            if (angle == 28.0f) stir(seat * moved({0.115f + shift, 0.0038f, 0.43f}), scene_.instances.back());
             place(napkin_mesh, seat * moved({-0.215f + shift, 0.001f, 0.46f}) * turned(90 + random_.real(-10, 10)));
         }
         place(mesh("cake knife", {{silver_, std::move(knife)}, {oak_, std::move(handle)}}), on(0.245f, -0.02f, 205));
@@ -299,6 +386,7 @@ private:
         Cake whole, piece;
         cake(whole, cut, detail_);
         place(cake_mesh("cake", whole), on_stand);
+        turn_around(moved({0.10f, 0, -0.13f}), scene_.instances.back());
         slice(piece, cut, detail_);
         // The slice is on the nearest guest's plate.
         place(cake_mesh("slice", piece), turned(28) * moved({-0.125f, top + 0.0054f, 0.49f}) * turned(20));

@@ -1,4 +1,6 @@
 // The tea table: big enough, closed china, a room without gaps, and sun on the cloth.
+#include <algorithm>
+#include <cmath>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -6,6 +8,7 @@
 #include "engine/error.hpp"
 #include "scenes/builtin/teatime_parts.hpp"
 #include "scenes/builtin_kit.hpp"
+#include "scenes/moment.hpp"
 
 namespace myriad::scenes {
 namespace {
@@ -57,6 +60,39 @@ TEST_F(Teatime, SunStrikesTheTable) {
             if (x * x + z * z < 0.3f) (first_hit(*triangles, {x, 0.745f, z}, to_sun) == none ? lit : dark)++;
     EXPECT_GE(lit, 40);
     EXPECT_GE(dark, 40);
+}
+
+// The clip is a round, moves what it should and no more, and leaves the scene at rest as it is.
+TEST(TeatimeClip, SpoonStirsCakeTurnsCurtainsBillow) {
+    Scene scene = load("builtin:teatime?detail=0.25"), again = scene;
+    const Triangles rest = flatten(scene, Sharing::never);
+    Triangles t = flatten(again, Sharing::never, pick_clips(again, "tea"));
+    EXPECT_EQ(t.count(), rest.count());
+    EXPECT_GT(t.motion.count(), 1000u);
+    EXPECT_GT(t.motion.first_vertex, t.motion.count());
+    EXPECT_GT(t.motion.deltas.size(), 500u);
+    const auto positions = [&](double seconds) {
+        deform(t, moment_at(again, t.motion, seconds));
+        return t.positions;
+    };
+    const auto begin = positions(0), end = positions(std::nextafter(8.0, 0.0));
+    float most = 0;
+    for (size_t i = 0; i < begin.size(); ++i) most = std::max(most, glm::length(begin[i] - end[i]));
+    EXPECT_LT(most, 1e-4f) << "the end is the beginning";
+    // The spoon stays inside of its cup: below the rim, no point of it is farther from the axis than the china's inside.
+    const size_t spoon = size_t(std::ranges::find_if(again.instances, [&](const Instance& i) { return i.node != none && again.nodes[i.node].name == "spoon"; }) - again.instances.begin());
+    ASSERT_LT(spoon, again.instances.size());
+    const uint32_t node = again.instances[spoon].node;
+    for (double seconds = 0; seconds < 2; seconds += 0.125) {
+        const Pose pose = pose_at(again, t.motion.playback, seconds);
+        const glm::dmat4 in_cup = glm::inverse(pose.worlds[again.nodes[node].parent]) * pose.worlds[node];
+        for (const vec3& v : again.meshes[again.instances[spoon].mesh].primitives[0].positions) {
+            const vec3 p(in_cup * glm::dvec4(v, 1));
+            if (p.y > 0.060f) continue;
+            EXPECT_GT(p.y, 0.0105f) << seconds;
+            EXPECT_LT(std::hypot(p.x, p.z), p.y > 0.046f ? 0.0393f : p.y > 0.029f ? 0.0352f : 0.027f) << seconds << " s, at a height of " << p.y;
+        }
+    }
 }
 
 TEST(TeatimeParts, PiecesTurnedInOneAreClosed) {

@@ -65,7 +65,7 @@ private:
 
 }  // namespace
 
-Primitive decode_draco(const Place& outer, const tinygltf::Primitive& primitive, const tinygltf::Value& extension) {
+Primitive decode_draco(const Place& outer, const tinygltf::Primitive& primitive, const tinygltf::Value& extension, JointSets* joints) {
     const Place place = outer.at(draco_extension);
     if (!extension.IsObject() || !extension.Has("bufferView") || !extension.Get("bufferView").IsInt() || !extension.Has("attributes"))
         place.fail("bufferView or attributes are missing", "compress the file again");
@@ -79,6 +79,10 @@ Primitive decode_draco(const Place& outer, const tinygltf::Primitive& primitive,
     out.texcoords = attributes.read<2>("TEXCOORD_0");
     out.texcoords1 = attributes.read<2>("TEXCOORD_1");
     out.colors = attributes.read<4>("COLOR_0", 3, true);
+    for (size_t set = 0; joints && set < joints->size(); ++set) {
+        (*joints)[set].joints = attributes.read<4>(("JOINTS_" + std::to_string(set)).c_str());
+        (*joints)[set].weights = attributes.read<4>(("WEIGHTS_" + std::to_string(set)).c_str(), 4, true);
+    }
     place.spend(mesh->num_faces(), 3 * sizeof(uint32_t));
     out.indices.reserve(size_t(mesh->num_faces()) * 3);
     for (draco::FaceIndex f(0); f < mesh->num_faces(); ++f)

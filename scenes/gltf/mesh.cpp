@@ -1,6 +1,11 @@
 #include "scenes/gltf/mesh.hpp"
 
+#include <map>
+#include <utility>
+
+#include "scenes/attributes.hpp"
 #include "scenes/gltf/draco.hpp"
+#include "scenes/gltf/skin.hpp"
 
 namespace myriad::scenes::gltf {
 namespace {
@@ -20,13 +25,6 @@ std::vector<uint32_t> as_list(const std::vector<uint32_t>& in, int mode) {
     return out;
 }
 
-// Applies `f` to the vector of each attribute in two primitives.
-template <class F>
-void each_attribute(Primitive& a, const Primitive& b, F&& f) {
-    f(a.positions, b.positions), f(a.normals, b.normals), f(a.tangents, b.tangents);
-    f(a.texcoords, b.texcoords), f(a.texcoords1, b.texcoords1), f(a.colors, b.colors);
-}
-
 // Keeps only the vertices that are used: exporters let many primitives share one big vertex buffer.
 void compact(Primitive& p) {
     if (p.positions.size() <= p.indices.size()) return;
@@ -39,7 +37,7 @@ void compact(Primitive& p) {
         i = number[i];
     }
     Primitive out;
-    each_attribute(out, p, [&](auto& to, const auto& from) {
+    each_attribute(out, std::as_const(p), [&](auto& to, const auto& from) {
         if (from.empty()) return;
         to.reserve(used.size());
         for (uint32_t i : used) to.push_back(from[i]);
@@ -72,12 +70,41 @@ std::vector<uint32_t> read_list(const Place& place, const tinygltf::Primitive& i
     return as_list(indices, in.mode);
 }
 
-Primitive read_primitive(const Place& place, const tinygltf::Primitive& in) {
+// What was wrong with primitives, but harmless.
+struct Defects {
+    JointDefects joints;
+    size_t deltas = 0;
+
+    void warn(Scene& scene) const {
+        const auto say = [&](size_t count, const char* what) {
+            if (count) scene.warnings.push_back(std::to_string(count) + what);
+        };
+        say(joints.sums, " vertices have joint weights that do not sum to 1; they were made to.");
+        say(joints.sets, " primitives have more than eight joints a vertex; the others were left out.");
+        say(deltas, " displacements of morph targets are not finite or beyond 1e9 m and were set to 0.");
+    }
+};
+
+std::vector<glm::vec3> read_deltas(const Place& place, const std::map<std::string, int>& in, const char* name, size_t vertices, Defects& defects) {
+    const auto it = in.find(name);
+    if (it == in.end()) return {};
+    std::vector<glm::vec3> out = read_vectors<3>(place.at(name), it->second);
+    if (out.size() != vertices)
+        place.fail("there are " + std::to_string(out.size()) + " of " + name + " but " + std::to_string(vertices) + " vertices", "export the file again");
+    for (glm::vec3& d : out)
+        if (!glm::all(glm::lessThanEqual(glm::abs(d), glm::vec3(farthest)))) d = glm::vec3(0), ++defects.deltas;
+    return out;
+}
+
+// What of a primitive is read: joints only where some instance has a skin.
+Primitive read_primitive(const Place& place, const tinygltf::Primitive& in, bool skinned, Defects& defects) {
     Primitive out;
+    JointSets joints;
     if (const auto* draco = extension(in, draco_extension)) {
-        out = decode_draco(place, in, *draco);
+        out = decode_draco(place, in, *draco, skinned ? &joints : nullptr);
     } else {
         read_attributes(place, in, out);
+        if (skinned) joints = read_joint_sets(place, in);
         out.indices = read_list(place, in, out.positions.size());
     }
     if (out.positions.empty()) place.fail("POSITION is missing or empty", "export the mesh with positions");
@@ -96,6 +123,15 @@ Primitive read_primitive(const Place& place, const tinygltf::Primitive& in) {
     if (in.material >= 0 && size_t(in.material) >= place.model.materials.size())
         place.fail("there is no material " + std::to_string(in.material), "export the file again");
     out.material = in.material >= 0 ? uint32_t(in.material) : none;
+    if (skinned) {
+        defects.joints.sets += in.attributes.contains("JOINTS_2");
+        set_joints(place, joints, out, defects.joints);
+    }
+    for (size_t k = 0; k < in.targets.size(); ++k) {
+        const Place here = place.at("target " + std::to_string(k));
+        out.targets.push_back({read_deltas(here, in.targets[k], "POSITION", out.positions.size(), defects),
+                               out.normals.empty() ? std::vector<glm::vec3>() : read_deltas(here, in.targets[k], "NORMAL", out.positions.size(), defects)});
+    }
     compact(out);
     return out;
 }
@@ -103,10 +139,14 @@ Primitive read_primitive(const Place& place, const tinygltf::Primitive& in) {
 }  // namespace
 
 void read_meshes(const Place& place, Scene& scene) {
-    size_t lines = 0, morphed = 0;
+    size_t lines = 0;
+    Defects defects;
     scene.meshes.resize(place.model.meshes.size());
-    std::vector<bool> shown(scene.meshes.size(), false);
-    for (const Instance& instance : scene.instances) shown[instance.mesh] = true;
+    std::vector<bool> shown(scene.meshes.size(), false), skinned(shown);
+    for (const Instance& instance : scene.instances) {
+        shown[instance.mesh] = true;
+        if (instance.skin != none) skinned[instance.mesh] = true;
+    }
     for (size_t m = 0; m < scene.meshes.size(); ++m) {
         const auto& in = place.model.meshes[m];
         const std::string name = "mesh " + std::to_string(m) + " " + quote(in.name);
@@ -118,12 +158,15 @@ void read_meshes(const Place& place, Scene& scene) {
                 ++lines;
                 continue;
             }
-            morphed += !in.primitives[p].targets.empty();
-            mesh.primitives.push_back(read_primitive(place.at(name + " primitive " + std::to_string(p)), in.primitives[p]));
+            const Place here = place.at(name + " primitive " + std::to_string(p));
+            if (in.primitives[p].targets.size() != in.primitives[0].targets.size())
+                here.fail("it has " + std::to_string(in.primitives[p].targets.size()) + " morph targets, and the first has " +
+                              std::to_string(in.primitives[0].targets.size()), "export the file again");
+            mesh.primitives.push_back(read_primitive(here, in.primitives[p], skinned[m], defects));
         }
     }
     if (lines) scene.warnings.push_back(std::to_string(lines) + " primitives made of points or lines were left out.");
-    if (morphed) scene.warnings.push_back(std::to_string(morphed) + " primitives with morph targets are shown in their base shape.");
+    defects.warn(scene);
 }
 
 }  // namespace myriad::scenes::gltf

@@ -13,19 +13,47 @@
 namespace myriad::scenes::gltf {
 namespace {
 
-glm::dmat4 local_transform(const Place& place, const tinygltf::Node& node) {
+// Where a node stands within its parent, at rest.
+Node read_node(const Place& place, const tinygltf::Node& node) {
+    Node out;
     const auto check = [&](const std::vector<double>& v, size_t n, const char* what) {
         if (!v.empty() && v.size() != n)
             place.fail(std::string(what) + " has " + std::to_string(v.size()) + " numbers, not " + std::to_string(n), "correct it");
         return !v.empty();
     };
-    if (check(node.matrix, 16, "matrix")) return glm::make_mat4(node.matrix.data());
-    glm::dvec3 translation(0), scale(1);
-    glm::dquat rotation(1, 0, 0, 0);
-    if (check(node.translation, 3, "translation")) translation = glm::make_vec3(node.translation.data());
-    if (check(node.rotation, 4, "rotation")) rotation = {node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]};
-    if (check(node.scale, 3, "scale")) scale = glm::make_vec3(node.scale.data());
-    return Transform{translation, rotation, scale}.matrix();
+    if (check(node.matrix, 16, "matrix")) {
+        out.matrix = glm::make_mat4(node.matrix.data());
+        return out;
+    }
+    if (check(node.translation, 3, "translation")) out.rest.translation = glm::make_vec3(node.translation.data());
+    if (check(node.rotation, 4, "rotation")) out.rest.rotation = {node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]};
+    if (check(node.scale, 3, "scale")) out.rest.scale = glm::make_vec3(node.scale.data());
+    return out;
+}
+
+// Weights of the node's mesh at rest: the node's own, else the mesh's, else 0; empty where it has no morph targets.
+std::vector<float> read_weights(const Place& place, const tinygltf::Node& node) {
+    if (node.mesh < 0 || size_t(node.mesh) >= place.model.meshes.size()) return {};
+    const auto& mesh = place.model.meshes[size_t(node.mesh)];
+    const size_t targets = mesh.primitives.empty() ? 0 : mesh.primitives[0].targets.size();
+    const std::vector<double>& given = node.weights.empty() ? mesh.weights : node.weights;
+    if (targets == 0) return {};
+    if (!given.empty() && given.size() != targets)
+        place.fail("there are " + std::to_string(given.size()) + " weights, not " + std::to_string(targets), "give one a morph target");
+    place.spend(targets, sizeof(float));
+    std::vector<float> out(targets, 0.0f);
+    for (size_t i = 0; i < given.size(); ++i) {
+        out[i] = float(given[i]);
+        if (!std::isfinite(out[i])) place.fail("weight " + std::to_string(i) + " is too large", "correct it");
+    }
+    return out;
+}
+
+// Whether anything in the file can move or deform.
+bool has_movement(const tinygltf::Model& model) {
+    const auto morphs = [](const tinygltf::Primitive& p) { return !p.targets.empty(); };
+    return !model.animations.empty() || !model.skins.empty() ||
+           std::ranges::any_of(model.meshes, [&](const tinygltf::Mesh& m) { return std::ranges::any_of(m.primitives, morphs); });
 }
 
 // What stands in the hierarchy but cannot be used, by what is the matter.
@@ -116,50 +144,78 @@ std::vector<glm::dmat4> instance_transforms(const Place& outer, const tinygltf::
 // Walks the hierarchy with a stack of its own: neither a deep chain nor a cycle can hurt. Transforms are multiplied in double.
 class Walk {
 public:
-    Walk(const Place& place, Scene& scene) : place_(place), scene_(scene), seen_(place.model.nodes.size(), false) {}
+    Walk(const Place& place, Scene& scene) : place_(place), scene_(scene), seen_(place.model.nodes.size(), false) {
+        if (has_movement(place.model)) hierarchy_.of_file.assign(place.model.nodes.size(), none);
+    }
 
-    void run(const std::vector<int>& roots) {
-        push(place_, roots, glm::dmat4(1));
+    Hierarchy run(const std::vector<int>& roots) {
+        push(place_, roots, {glm::dmat4(1), none});
         while (!stack_.empty()) {
-            const auto [index, to_world] = stack_.back();
+            const auto [index, parent] = stack_.back();
             stack_.pop_back();
-            visit(index, to_world);
+            visit(index, parent);
         }
         left_out_.warn(scene_);
+        return std::move(hierarchy_);
     }
 
 private:
-    void push(const Place& place, const std::vector<int>& nodes, const glm::dmat4& to_world) {
+    // A node that was visited.
+    struct Visited {
+        glm::dmat4 to_world;
+        uint32_t node;  // in scene.nodes, or none
+    };
+
+    void push(const Place& place, const std::vector<int>& nodes, const Visited& parent) {
         for (auto it = nodes.rbegin(); it != nodes.rend(); ++it) {  // reversed, so that they are visited in file order
             if (*it < 0 || size_t(*it) >= seen_.size()) place.fail("there is no node " + std::to_string(*it), "export the file again");
             if (seen_[size_t(*it)])
                 place.fail("node " + std::to_string(*it) + " is in a cycle or has two parents", "make the hierarchy a tree");
             seen_[size_t(*it)] = true;
-            stack_.emplace_back(*it, to_world);
+            stack_.emplace_back(*it, parent);
         }
     }
 
-    void visit(int index, const glm::dmat4& parent) {
-        const auto& node = place_.model.nodes[size_t(index)];
-        const Place place = place_.at("node " + std::to_string(index) + " " + quote(node.name));
-        const glm::dmat4 to_world = parent * local_transform(place, node);
-        if (node.mesh >= 0) add_instances(place, node, to_world);
-        if (node.camera >= 0) add_camera(place, node, to_world);
-        if (const auto* light = extension(node, lights_extension)) left_out_.lights += !add_light(place, node, *light, to_world, scene_);
-        push(place, node.children, to_world);
+    uint32_t keep(Node node, uint32_t parent) {
+        node.parent = parent;
+        scene_.nodes.push_back(std::move(node));
+        return uint32_t(scene_.nodes.size() - 1);
     }
 
-    void add_instances(const Place& place, const tinygltf::Node& node, const glm::dmat4& to_world) {
+    void visit(int index, const Visited& parent) {
+        const auto& node = place_.model.nodes[size_t(index)];
+        const Place place = place_.at("node " + std::to_string(index) + " " + quote(node.name));
+        Node read = read_node(place, node);
+        Visited here{parent.to_world * (read.matrix ? *read.matrix : read.rest.matrix()), none};
+        if (!hierarchy_.of_file.empty()) {
+            read.name = node.name;
+            read.weights = read_weights(place, node);
+            here.node = hierarchy_.of_file[size_t(index)] = keep(std::move(read), parent.node);
+        }
+        const size_t cameras = scene_.cameras.size(), lights = scene_.lights.size();
+        if (node.mesh >= 0) add_instances(place, node, here);
+        if (node.camera >= 0) add_camera(place, node, here.to_world);
+        if (const auto* light = extension(node, lights_extension)) left_out_.lights += !add_light(place, node, *light, here.to_world, scene_);
+        for (size_t i = cameras; i < scene_.cameras.size(); ++i) scene_.cameras[i].node = here.node;
+        for (size_t i = lights; i < scene_.lights.size(); ++i) scene_.lights[i].node = here.node;
+        push(place, node.children, here);
+    }
+
+    void add_instances(const Place& place, const tinygltf::Node& node, const Visited& at) {
         if (size_t(node.mesh) >= place.model.meshes.size()) place.fail("there is no mesh " + std::to_string(node.mesh), "export the file again");
         const uint32_t mesh = uint32_t(node.mesh);
         const auto* instancing = extension(node, instancing_extension);
-        const auto add = [&](const glm::dmat4& m) {
-            if (sane(m)) scene_.instances.push_back({mesh, glm::mat4(m)});
+        const auto add = [&](const glm::dmat4& m, uint32_t number, uint32_t skin) {
+            if (sane(m)) scene_.instances.push_back({mesh, glm::mat4(m), number, skin});
             else ++left_out_.instances;
         };
-        if (!instancing) add(to_world);
-        else
-            for (const glm::dmat4& within : instance_transforms(place, *instancing)) add(to_world * within);
+        const uint32_t skin = node.skin >= 0 && at.node != none ? uint32_t(node.skin) : none;
+        if (!instancing) return add(at.to_world, at.node, skin);
+        for (const glm::dmat4& within : instance_transforms(place, *instancing)) {  // a node each below the one that has them
+            uint32_t number = at.node;
+            if (number != none) place.spend(1, sizeof(Node)), number = keep({.matrix = within, .weights = scene_.nodes[at.node].weights}, at.node);
+            add(at.to_world * within, number, none);
+        }
     }
 
     void add_camera(const Place& place, const tinygltf::Node& node, const glm::dmat4& to_world) {
@@ -173,7 +229,8 @@ private:
     const Place& place_;
     Scene& scene_;
     std::vector<bool> seen_;
-    std::vector<std::pair<int, glm::dmat4>> stack_;
+    std::vector<std::pair<int, Visited>> stack_;
+    Hierarchy hierarchy_;
     LeftOut left_out_;
 };
 
@@ -209,8 +266,8 @@ int pick_scene(const Place& place, const std::string& choice) {
     place.fail("there is no scene " + quote(choice), scenes.empty() ? "the file has none, leave the choice out" : "choose one of " + known);
 }
 
-void read_nodes(const Place& place, int which, Scene& scene) {
-    Walk(place, scene).run(which < 0 ? roots_without_scene(place) : place.model.scenes[size_t(which)].nodes);
+Hierarchy read_nodes(const Place& place, int which, Scene& scene) {
+    return Walk(place, scene).run(which < 0 ? roots_without_scene(place) : place.model.scenes[size_t(which)].nodes);
 }
 
 void read_background(const Place& place, int which, Scene& scene) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <deque>
 #include <limits>
+#include <map>
 #include <set>
 
 #include <glm/gtc/matrix_access.hpp>
@@ -96,6 +97,8 @@ public:
         add_materials();
         add_meshes();
         add_nodes();
+        add_skins();
+        add_clips();
         if (bin_size_) json_["buffers"] = Json::array({Json{{"byteLength", bin_size_}}});
         if (!extensions_.empty()) json_["extensionsUsed"] = extensions_;
     }
@@ -279,7 +282,24 @@ private:
             attributes["TEXCOORD_1"] = add_attribute("a texture coordinate of " + name, in.texcoords1);
         }
         if (!in.colors.empty()) attributes["COLOR_0"] = add_attribute("a colour of " + name, in.colors);
-        return {{"attributes", std::move(attributes)}, {"indices", add_indices(in)}, {"material", in.material}};
+        for (int set = 0; set < 2 && !in.joints[set].empty(); ++set) {
+            assert(in.joints[set].size() == count && in.joint_weights[set].size() == count);
+            const size_t view = add_view(in.joints[set].data(), count * sizeof(glm::u16vec4), vertices);
+            attributes["JOINTS_" + std::to_string(set)] = add_accessor({{"bufferView", view}, {"componentType", u16}, {"count", count}, {"type", "VEC4"}});
+            attributes["WEIGHTS_" + std::to_string(set)] = add_attribute("a joint's weight of " + name, in.joint_weights[set]);
+        }
+        Json out = {{"attributes", std::move(attributes)}, {"indices", add_indices(in)}, {"material", in.material}};
+        for (const MorphTarget& target : in.targets) out["targets"].push_back(morph_target(name, target, count));
+        return out;
+    }
+
+    // A target in which nothing moves has positions all the same, for an empty one is not valid: zeros, which take no bytes.
+    Json morph_target(const std::string& name, const MorphTarget& in, size_t count) {
+        Json out = Json::object();
+        if (!in.positions.empty()) out["POSITION"] = add_attribute("a morph target of " + name, in.positions, true);
+        else out["POSITION"] = add_accessor({{"componentType", f32}, {"count", count}, {"type", "VEC3"}, {"min", {0, 0, 0}}, {"max", {0, 0, 0}}});
+        if (!in.normals.empty()) out["NORMAL"] = add_attribute("a morph target of " + name, in.normals);
+        return out;
     }
 
     size_t add_zeros(size_t count) {
@@ -332,12 +352,104 @@ private:
         roots_.push_back(nodes_.size() - 1);
     }
 
+    // The scene's own nodes come first, under their own numbers; what hangs from them is added later.
+    void add_hierarchy() {
+        for (const Node& in : scene_.nodes) {
+            const std::string name = "node \"" + in.name + "\"";
+            const double values[] = {in.rest.translation.x, in.rest.translation.y, in.rest.translation.z, in.rest.rotation.x, in.rest.rotation.y,
+                                     in.rest.rotation.z, in.rest.rotation.w, in.rest.scale.x, in.rest.scale.y, in.rest.scale.z};
+            if (!std::ranges::all_of(values, [](double v) { return std::isfinite(v); })) fail("the transform of " + name + " is not finite", "correct it");
+            Json out = Json::object();
+            if (!in.name.empty()) out["name"] = in.name;
+            if (in.matrix) {
+                for (int i = 0; i < 16; ++i) out["matrix"].push_back(glm::value_ptr(*in.matrix)[i]);
+            } else {
+                if (in.rest.translation != glm::dvec3(0)) out["translation"] = numbers(in.rest.translation);
+                if (in.rest.rotation != glm::dquat(1, 0, 0, 0)) out["rotation"] = numbers(in.rest.rotation);
+                if (in.rest.scale != glm::dvec3(1)) out["scale"] = numbers(in.rest.scale);
+            }
+            if (in.parent != none) nodes_[in.parent]["children"].push_back(nodes_.size());
+            nodes_.push_back(std::move(out));
+        }
+    }
+
+    // Roots of the scene's own nodes up to the one that `node` is below: in their order, between instances that stand still.
+    void add_roots(uint32_t node) {
+        while (scene_.nodes[node].parent != none) node = scene_.nodes[node].parent;
+        for (; next_root_ <= node; ++next_root_)
+            if (scene_.nodes[next_root_].parent == none) roots_.push_back(next_root_);
+    }
+
+    // At its node, or where it stands.
+    void add_instance(const Instance& in) {
+        if (in.node == none) return add_node(scene_.meshes[in.mesh].name, "an instance of mesh", in.to_world, {{"mesh", mesh_numbers_[in.mesh]}});
+        Json& node = nodes_[in.node];
+        assert(!node.contains("mesh"));
+        add_roots(in.node);
+        node["mesh"] = mesh_numbers_[in.mesh];
+        if (in.skin != none) node["skin"] = in.skin;
+        for (const float weight : scene_.nodes[in.node].weights) node["weights"].push_back(number(weight));
+    }
+
+    void add_skins() {
+        for (const Skin& in : scene_.skins) {
+            assert(in.joints.size() == in.inverse_bind.size() && !in.joints.empty());
+            const size_t floats = 16 * in.joints.size();
+            if (!finite(&in.inverse_bind[0][0].x, floats)) fail("skin \"" + in.name + "\" has a matrix that is not finite", "correct it");
+            Json out = Json::object();
+            if (!in.name.empty()) out["name"] = in.name;
+            out["joints"] = in.joints;
+            out["inverseBindMatrices"] = add_accessor({{"bufferView", add_view(in.inverse_bind.data(), floats * sizeof(float), 0)},
+                                                       {"componentType", f32}, {"count", in.joints.size()}, {"type", "MAT4"}});
+            json_["skins"].push_back(std::move(out));
+        }
+    }
+
+    // Accessor over floats of a track.
+    size_t add_floats(const std::vector<float>& values, int width, bool bounds) {
+        Json out = {{"bufferView", add_view(values.data(), values.size() * sizeof(float), 0)}, {"componentType", f32}};
+        out["count"] = values.size() / size_t(width);
+        out["type"] = width == 1 ? "SCALAR" : "VEC" + std::to_string(width);
+        if (bounds) out["min"] = {number(values.front())}, out["max"] = {number(values.back())};
+        return add_accessor(std::move(out));
+    }
+
+    void add_clips() {
+        constexpr const char* interpolations[] = {"STEP", "LINEAR", "CUBICSPLINE"};
+        constexpr const char* paths[] = {"translation", "rotation", "scale", "weights"};
+        std::map<std::vector<float>, size_t> times;  // many tracks share theirs
+        for (const Clip& in : scene_.clips) {
+            if (in.channels.empty()) continue;  // glTF wants at least one
+            Json out = Json::object();
+            if (!in.name.empty()) out["name"] = in.name;
+            std::vector<bool> weights(in.tracks.size());
+            for (const Channel& channel : in.channels) {
+                if (channel.path == Path::weights) weights[channel.track] = true;
+                out["channels"].push_back({{"sampler", channel.track}, {"target", {{"node", channel.node}, {"path", paths[size_t(channel.path)]}}}});
+            }
+            for (size_t t = 0; t < in.tracks.size(); ++t) {
+                const Track& track = in.tracks[t];
+                if (!finite(track.values.data(), track.values.size()) || !finite(track.times.data(), track.times.size()))
+                    fail("animation \"" + in.name + "\" has a key that is not finite", "correct it");
+                const auto [at, fresh] = times.try_emplace(track.times, 0);
+                if (fresh) at->second = add_floats(track.times, 1, true);
+                out["samplers"].push_back({{"input", at->second}, {"interpolation", interpolations[size_t(track.interpolation)]},
+                                           {"output", add_floats(track.values, weights[t] ? 1 : int(track.width), false)}});
+            }
+            json_["animations"].push_back(std::move(out));
+        }
+    }
+
     void add_cameras() {
         for (const Camera& in : scene_.cameras) {
             if (!(in.yfov > 0 && in.yfov < 3.14159f)) fail("the angle of camera \"" + in.name + "\" is not between 0 and pi", "correct it");
             Json camera = {{"type", "perspective"}, {"perspective", {{"yfov", number(in.yfov)}, {"znear", 0.01}}}};
             if (!in.name.empty()) camera["name"] = in.name;
             json_["cameras"].push_back(std::move(camera));
+            if (in.node != none) {
+                nodes_[in.node]["camera"] = json_["cameras"].size() - 1;
+                continue;
+            }
             // A camera has a place and a direction: what may have scaled it is gone.
             glm::mat4 to_world = in.to_world;
             if (!gltf::at_right_angles(glm::dmat3(to_world))) {
@@ -370,6 +482,11 @@ private:
                 const float inner = std::min(in.inner_cone, std::nextafter(in.outer_cone, 0.0f));
                 light["spot"] = {{"innerConeAngle", number(inner)}, {"outerConeAngle", number(std::min(in.outer_cone, 1.5707963f))}};
             }
+            if (in.node != none) {
+                use_extension(nodes_[in.node], extension)["light"] = lights.size();
+                lights.push_back(std::move(light));
+                continue;
+            }
             Json node = Json::object();
             if (!in.name.empty()) node["name"] = in.name;
             if (in.position != glm::vec3(0)) node["translation"] = numbers(in.position);
@@ -383,11 +500,12 @@ private:
     }
 
     void add_nodes() {
+        add_hierarchy();
         for (const Instance& in : scene_.instances) {
             assert(in.mesh < scene_.meshes.size());
-            if (mesh_numbers_[in.mesh] != none)
-                add_node(scene_.meshes[in.mesh].name, "an instance of mesh", in.to_world, {{"mesh", mesh_numbers_[in.mesh]}});
+            if (mesh_numbers_[in.mesh] != none) add_instance(in);
         }
+        for (uint32_t i = 0; i < scene_.nodes.size(); ++i) add_roots(i);
         add_cameras();
         add_lights();
         Json scene = Json::object();
@@ -409,6 +527,7 @@ private:
     const std::string place_;  // what each message starts with
     Json json_ = Json::object(), nodes_ = Json::array(), roots_ = Json::array();
     std::set<std::string> extensions_;
+    uint32_t next_root_ = 0;              // of scene_.nodes: those before are in roots_, if they are roots
     std::vector<uint32_t> mesh_numbers_;  // a scene's mesh to a file's, or none
     std::vector<Piece> pieces_;
     std::deque<Bytes> owned_;  // what pieces_ points at and the scene does not hold

@@ -19,6 +19,8 @@ struct GlbOptions {
 // All that a Scene holds but its warnings. What is read back is the same scene to the bit, but for this:
 // - Cameras and lights turn by up to a rounding error: glTF knows their direction only as a rotation.
 // - A transform that shears is written as two nodes, for a node of glTF cannot shear; it comes back with a rounding error.
+// - What hangs from scene.nodes comes in the order of the nodes among instances, cameras and lights. A track that no channel
+//   plays and a clip without channels are lost.
 // - Meshes, primitives and instances without triangles are left out, and so are tangents without normals and texture
 //   coordinates, which glTF has no place for.
 // The scene is expected sound: indices in range, an attribute empty or as long as `positions`. Throws InputError for what

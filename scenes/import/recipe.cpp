@@ -11,6 +11,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "engine/error.hpp"
+#include "scenes/attributes.hpp"
 #include "scenes/builtin/kit.hpp"
 #include "scenes/gltf/limits.hpp"
 #include "scenes/import/bytes.hpp"
@@ -40,6 +41,12 @@ struct Box {
 
 Box bounds(const Scene& scene) {
     Box out;
+    if (!scene.nodes.empty()) {  // joints and morph targets say where vertices are
+        Scene posed = scene;
+        const Triangles triangles = flatten(posed, Sharing::never);
+        if (triangles.count() > 0) out.add(dvec3(triangles.lo)), out.add(dvec3(triangles.hi));
+        return out;
+    }
     for (const Instance& instance : scene.instances)
         for (const Primitive& p : scene.meshes[instance.mesh].primitives)
             for (const glm::vec3& v : p.positions) out.add(dvec3(dmat4(instance.to_world) * glm::dvec4(v, 1)));
@@ -64,8 +71,9 @@ uint64_t bytes_of(const Scene& scene) {
     for (const Texture& texture : scene.textures) bytes += texture.rgba.size();
     for (const Mesh& mesh : scene.meshes)
         for (const Primitive& p : mesh.primitives)
-            bytes += sizeof(glm::vec3) * (p.positions.size() + p.normals.size()) + sizeof(glm::vec2) * (p.texcoords.size() + p.texcoords1.size()) +
-                     sizeof(glm::vec4) * (p.colors.size() + p.tangents.size()) + sizeof(uint32_t) * p.indices.size();
+            each_attribute(p, [&](const auto& list) { bytes += list.size() * sizeof list[0]; }), bytes += sizeof(uint32_t) * p.indices.size();
+    for (const Clip& clip : scene.clips)
+        for (const Track& track : clip.tracks) bytes += sizeof(float) * (track.times.size() + track.values.size());
     return bytes;
 }
 
@@ -221,6 +229,8 @@ private:
         }
         if (part.instances.size() * places.size() > most_instances - std::min<size_t>(most_instances, scene_.instances.size()))
             item.fail("the scene would have more than " + std::to_string(most_instances) + " instances", "give it fewer places");
+        if ((part.nodes.size() + 1) * places.size() > most_instances - std::min<size_t>(most_instances, scene_.nodes.size()))
+            item.fail("the scene would have more than " + std::to_string(most_instances) + " nodes", "give it fewer places");
         add(std::move(part), places, item.text("name", item.text("file", "")), box);
     }
 
@@ -321,9 +331,17 @@ private:
             scene_.meshes.push_back(std::move(mesh));
         }
         Box all;
+        std::vector<uint32_t> first_of_place;
         for (const dmat4& to_world : places) {
-            for (const Instance& instance : part.instances)
-                scene_.instances.push_back({first_mesh + instance.mesh, glm::mat4(to_world * dmat4(instance.to_world))});
+            const uint32_t first_skin = uint32_t(scene_.skins.size()), offset = add_nodes(part, to_world);
+            first_of_place.push_back(offset);
+            for (const Instance& instance : part.instances) {
+                Instance& placed = scene_.instances.emplace_back(instance);
+                placed.mesh += first_mesh;
+                placed.to_world = glm::mat4(to_world * dmat4(instance.to_world));
+                if (placed.node != none) placed.node += offset;
+                if (placed.skin != none) placed.skin += first_skin;
+            }
             for (int corner = 0; corner < 8; ++corner) {
                 const dvec3 p(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y, corner & 4 ? box.hi.z : box.lo.z);
                 all.add(dvec3(to_world * glm::dvec4(p, 1)));
@@ -332,17 +350,52 @@ private:
         placed_[name].add(all);
         everything_.add(all);
         if (places.empty()) return;
+        add_clips(part, first_of_place);
         Scene rest;  // lights and cameras come once, at the first place
         rest.lights = std::move(part.lights), rest.cameras = std::move(part.cameras);
         for (Light& light : rest.lights) {
             light.position = glm::vec3(places[0] * glm::dvec4(light.position, 1));
             light.direction = glm::normalize(glm::vec3(places[0] * glm::dvec4(light.direction, 0)));
+            if (light.node != none) light.node += first_of_place[0];
             scene_.lights.push_back(light);
         }
         for (Camera& camera : rest.cameras) {
             camera.to_world = glm::mat4(places[0] * dmat4(camera.to_world));
             for (int c = 0; c < 3; ++c) camera.to_world[c] = glm::normalize(camera.to_world[c]);
+            if (camera.node != none) camera.node += first_of_place[0];
             scene_.cameras.push_back(camera);
+        }
+    }
+
+    // Nodes and skins of the part, below one that is the place; returns what is added to their numbers.
+    uint32_t add_nodes(const Scene& part, const dmat4& to_world) {
+        if (part.nodes.empty()) return 0;
+        const uint32_t place = uint32_t(scene_.nodes.size()), offset = place + 1;
+        scene_.nodes.push_back({.matrix = to_world});
+        for (Node node : part.nodes) {
+            node.parent = node.parent == none ? place : node.parent + offset;
+            scene_.nodes.push_back(std::move(node));
+        }
+        for (Skin skin : part.skins) {
+            for (uint32_t& joint : skin.joints) joint += offset;
+            scene_.skins.push_back(std::move(skin));
+        }
+        return offset;
+    }
+
+    // A clip plays at all places of the part, and with those of the same name that other parts have.
+    void add_clips(Scene& part, const std::vector<uint32_t>& first_of_place) {
+        std::vector<bool> joined(scene_.clips.size());  // by a clip of this part
+        for (Clip& in : part.clips) {
+            size_t i = 0;
+            while (i < joined.size() && (joined[i] || in.name.empty() || scene_.clips[i].name != in.name)) ++i;
+            if (i == joined.size()) i = scene_.clips.size(), scene_.clips.push_back({.name = in.name});
+            else joined[i] = true;
+            Clip& clip = scene_.clips[i];
+            const uint32_t first_track = uint32_t(clip.tracks.size());
+            std::ranges::move(in.tracks, std::back_inserter(clip.tracks));
+            for (const uint32_t offset : first_of_place)
+                for (const Channel& channel : in.channels) clip.channels.push_back({channel.node + offset, channel.track + first_track, channel.path});
         }
     }
 
@@ -476,17 +529,7 @@ private:
 }  // namespace
 
 Scene read_recipe(const std::string& path, uint64_t most) {
-    constexpr uint64_t most_bytes = 16 << 20;
-    const Bytes bytes = read_file(path, most_bytes);
-    json document;
-    try {
-        document = json::parse(bytes.begin(), bytes.end(), nullptr, true, true);  // comments are allowed
-    } catch (const json::exception& e) {  // a number of too many digits is no parse_error
-        std::string what = e.what();
-        for (const char* begin : {"at line", "number overflow"})
-            if (const size_t at = what.find(begin); at != std::string::npos) what = what.substr(begin[0] == 'a' ? at + 3 : at);
-        throw InputError(path + ": the JSON is damaged, " + what.substr(0, 200) + "; correct it.");
-    }
+    const json document = read_json(path);
     return Recipe(path, document, most).make();
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/error.hpp"
+#include "scenes/import/bytes.hpp"
 
 namespace myriad::scenes::importing {
 namespace {
@@ -21,6 +22,19 @@ std::string listed(const std::vector<std::string>& names) {
 }
 
 }  // namespace
+
+json read_json(const std::string& path) {
+    constexpr uint64_t most_bytes = 16 << 20;
+    const Bytes bytes = read_file(path, most_bytes);
+    try {
+        return json::parse(bytes.begin(), bytes.end(), nullptr, true, true);
+    } catch (const json::exception& e) {  // a number of too many digits is no parse_error
+        std::string what = e.what();
+        for (const char* begin : {"at line", "number overflow"})
+            if (const size_t at = what.find(begin); at != std::string::npos) what = what.substr(begin[0] == 'a' ? at + 3 : at);
+        throw InputError(path + ": the JSON is damaged, " + what.substr(0, 200) + "; correct it.");
+    }
+}
 
 Item::Item(const json& value, std::string place, std::initializer_list<const char*> keys) : json_(value), place_(std::move(place)) {
     if (!json_.is_object()) fail("it is not an object", "write { … }");

@@ -10,6 +10,9 @@
 
 namespace myriad::scenes::importing {
 
+// A JSON file of up to 16 MiB, comments allowed. InputError where it is none.
+nlohmann::json read_json(const std::string& path);
+
 class Item {
 public:
     // `json` must be an object and have no other keys than these. It must outlive the item.

@@ -12,6 +12,9 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
+#include "scenes/attributes.hpp"
+#include "scenes/normals.hpp"
+
 namespace myriad::scenes {
 namespace {
 
@@ -27,19 +30,11 @@ glm::dvec3 unit(const glm::dvec3& v) {
     return length > 0 && std::isfinite(length) ? v / length : glm::dvec3(0);
 }
 
-glm::dvec3 face_normal(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
-    const glm::dvec3 o(a);
-    return glm::cross(glm::dvec3(b) - o, glm::dvec3(c) - o);
-}
-
 // Copies vertex i of `in` to the end of `out`, with all it has.
 void append_vertex(Primitive& out, const Primitive& in, uint32_t i) {
-    out.positions.push_back(in.positions[i]);
-    if (!in.normals.empty()) out.normals.push_back(in.normals[i]);
-    if (!in.tangents.empty()) out.tangents.push_back(in.tangents[i]);
-    if (!in.texcoords.empty()) out.texcoords.push_back(in.texcoords[i]);
-    if (!in.texcoords1.empty()) out.texcoords1.push_back(in.texcoords1[i]);
-    if (!in.colors.empty()) out.colors.push_back(in.colors[i]);
+    each_attribute(out, in, [i](auto& to, const auto& from) {
+        if (!from.empty()) to.push_back(from[i]);
+    });
 }
 
 // What was found and repaired, over the whole scene.
@@ -67,7 +62,7 @@ void drop_triangles(Primitive& p, Defects& defects) {
         assert(i[0] < p.positions.size() && i[1] < p.positions.size() && i[2] < p.positions.size());
         const glm::vec3 &a = p.positions[i[0]], &b = p.positions[i[1]], &c = p.positions[i[2]];
         if (!finite(a) || !finite(b) || !finite(c)) ++defects.unusable;
-        else if (face_normal(a, b, c) == glm::dvec3(0)) ++defects.flat;
+        else if (p.targets.empty() && face_normal(a, b, c) == glm::dvec3(0)) ++defects.flat;  // a morph target may open it
         else std::copy_n(i, 3, &p.indices[kept]), kept += 3;
     }
     p.indices.resize(kept);
@@ -179,9 +174,26 @@ glm::dmat4 upright(Axis up) {
     return glm::dmat4(1);
 }
 
+void add_root(Scene& scene, const glm::dmat4& matrix) {
+    if (scene.nodes.empty()) return;
+    const auto shift = [](uint32_t& node) {
+        if (node != none) ++node;
+    };
+    for (Node& node : scene.nodes) node.parent = node.parent == none ? 0 : node.parent + 1;
+    scene.nodes.insert(scene.nodes.begin(), {.matrix = matrix});
+    for (Instance& instance : scene.instances) shift(instance.node);
+    for (Camera& camera : scene.cameras) shift(camera.node);
+    for (Light& light : scene.lights) shift(light.node);
+    for (Skin& skin : scene.skins)
+        for (uint32_t& joint : skin.joints) ++joint;
+    for (Clip& clip : scene.clips)
+        for (Channel& channel : clip.channels) ++channel.node;
+}
+
 void transform(Scene& scene, const glm::dmat4& rotation, double scale) {
     const glm::dmat4 m = glm::scale(glm::dmat4(1), glm::dvec3(scale)) * rotation;
     if (m == glm::dmat4(1)) return;
+    add_root(scene, m);
     for (Instance& instance : scene.instances) instance.to_world = glm::mat4(m * glm::dmat4(instance.to_world));
     for (Camera& camera : scene.cameras) {
         camera.to_world = glm::mat4(rotation * glm::dmat4(camera.to_world));
@@ -198,9 +210,9 @@ void weld(Primitive& p) {
     const auto each_float = [&](uint32_t i, auto action) {
         const auto all = [&](const auto& list) {
             if (list.empty()) return;
-            for (int c = 0; c < list[i].length(); ++c) action(std::bit_cast<uint32_t>(list[i][c]));
+            for (int c = 0; c < list[i].length(); ++c) action(std::bit_cast<uint32_t>(float(list[i][c])));
         };
-        all(p.positions), all(p.normals), all(p.tangents), all(p.texcoords), all(p.texcoords1), all(p.colors);
+        each_attribute(p, all);
     };
     const auto hash = [&](uint32_t i) {
         uint64_t h = 0;
@@ -208,8 +220,9 @@ void weld(Primitive& p) {
         return h ^ h >> 32;
     };
     const auto same = [&](uint32_t i, uint32_t j) {
-        const auto in = [&](const auto& list) { return list.empty() || std::memcmp(&list[i], &list[j], sizeof list[0]) == 0; };
-        return in(p.positions) && in(p.normals) && in(p.tangents) && in(p.texcoords) && in(p.texcoords1) && in(p.colors);
+        bool same = true;
+        each_attribute(p, [&](const auto& list) { same = same && (list.empty() || std::memcmp(&list[i], &list[j], sizeof list[0]) == 0); });
+        return same;
     };
     // Open addressing, at most half full.
     std::vector<uint32_t> table(std::bit_ceil(2 * p.positions.size() + 1), none), number(p.positions.size(), none);

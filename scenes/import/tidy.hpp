@@ -14,6 +14,9 @@ glm::dmat4 upright(Axis up);
 // Everything in the scene is turned by `rotation` and scaled by `scale`. Intensities stay: they are what a file says.
 void transform(Scene& scene, const glm::dmat4& rotation, double scale);
 
+// Puts a node of this matrix above all of scene.nodes, if there are any.
+void add_root(Scene& scene, const glm::dmat4& matrix);
+
 // Makes the scene sound, so that it can be written and rendered: leaves out triangles that have no area or a corner that
 // is not finite, vertices and meshes and textures and materials that nothing uses; repairs normals, tangents, texture
 // coordinates and colours that are not finite, and makes normals unit. What was defective is counted in scene.warnings.

@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "engine/error.hpp"
-#include "scenes/scene.hpp"
+#include "scenes/moment.hpp"
 #include "tests/fuzz/input_file.hpp"
 #include "tests/fuzz/targets.hpp"
 
@@ -62,6 +62,15 @@ void check(const scenes::Scene& scene) {
                 demand(n == 0 || n == p.positions.size(), "attributes are as many as positions");
         }
     for (const auto& instance : scene.instances) demand(instance.mesh < scene.meshes.size(), "an instance's mesh exists");
+    const auto node = [&](uint32_t i) { return i == scenes::none || i < scene.nodes.size(); };
+    for (size_t i = 0; i < scene.nodes.size(); ++i)
+        demand(scene.nodes[i].parent == scenes::none || scene.nodes[i].parent < i, "a node comes after its parent");
+    for (const auto& instance : scene.instances)
+        demand(node(instance.node) && (instance.skin == scenes::none || (instance.skin < scene.skins.size() && instance.node != scenes::none)), "an instance's node and skin exist");
+    for (const auto& skin : scene.skins)
+        for (const uint32_t joint : skin.joints) demand(joint < scene.nodes.size(), "a joint exists");
+    for (const auto& clip : scene.clips)
+        for (const auto& channel : clip.channels) demand(channel.node < scene.nodes.size() && channel.track < clip.tracks.size(), "a channel's node and track exist");
     for (const auto& light : scene.lights)
         demand(finite(light.position) && finite(light.direction) && finite(light.intensity), "a light is finite");
     for (const auto& camera : scene.cameras)
@@ -84,6 +93,17 @@ void check(const scenes::Triangles& t, const scenes::Scene& scene) {
     for (const auto& c : t.texcoords1) demand(finite(c), "texture coordinates are finite");
 }
 
+// All clips together, at a few moments.
+void play(scenes::Scene& scene) {
+    if (scene.clips.empty()) return;
+    scenes::Triangles triangles = scenes::flatten(scene, scenes::Sharing::automatic, scenes::pick_clips(scene, "all"));
+    check(triangles, scene);
+    for (const double seconds : {0.0, 0.3, -7.0, 1e6}) {
+        scenes::deform(triangles, scenes::moment_at(scene, triangles.motion, seconds));
+        check(triangles, scene);
+    }
+}
+
 }  // namespace
 
 void gltf(const uint8_t* data, size_t size) {
@@ -101,6 +121,7 @@ void gltf(const uint8_t* data, size_t size) {
         const scenes::Triangles triangles = scenes::flatten(scene);
         check(triangles, scene);
         scenes::pick_camera(scene, triangles, "");
+        play(scene);
         for (const auto& warning : scene.warnings) demand(warning.size() < 2000, "a warning is short");
     } catch (const Error& e) {
         const std::string message = e.what();

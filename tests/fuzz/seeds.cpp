@@ -298,6 +298,26 @@ scenes::Scene variety() {
     return scene;
 }
 
+// Two joints that bend a triangle, a morph target, and a clip that moves them, a camera and a light.
+scenes::Scene moving() {
+    scenes::Scene scene = variety();
+    scenes::Primitive p = scene.meshes[1].primitives[1];
+    p.joints[0].assign(3, {0, 1, 0, 0});
+    p.joint_weights[0].assign(3, {0.25f, 0.75f, 0, 0});
+    p.targets.resize(1);
+    p.targets[0].positions.assign(3, {0, 1, 0});
+    scene.meshes.push_back({"bent", {p}});
+    scene.nodes = {{.name = "root"}, {.name = "tip", .parent = 0, .rest = {.translation = {0, 1, 0}}}, {.name = "skin", .weights = {0.5f}}, {.name = "eye", .parent = 1}};
+    scene.skins = {{"skin", {0, 1}, {glm::mat4(1), glm::mat4(1)}}};
+    scene.instances = {{2, glm::mat4(1), 2, 0}};
+    scene.cameras[0].node = 3, scene.lights[0].node = 1;
+    using Interpolation = scenes::Track::Interpolation;
+    scene.clips = {{"wave",
+                    {{Interpolation::linear, 4, {0, 1}, {0, 0, 0, 1, 0, 0, 0.7f, 0.7f}}, {Interpolation::step, 3, {0}, {0, 2, 0}}, {Interpolation::cubic, 1, {0, 1}, {0, 0, 1, 1, 1, 0}}},
+                    {{1, 0, scenes::Path::rotation}, {0, 1, scenes::Path::translation}, {2, 2, scenes::Path::weights}}}};
+    return scene;
+}
+
 // JSON, a zero byte, the binary chunk: the form that mutates well.
 std::string taken_apart(const std::string& glb) {
     uint32_t size = 0;
@@ -402,7 +422,7 @@ std::vector<std::string> seeds(const std::string& target) {
     if (target == "texture") return textures();
     if (target == "recipe") return recipes();
     const std::string glb = scenes::glb_bytes(variety());
-    return {glb, taken_apart(glb), by_hand(), compressed_by_draco(), compressed_by_meshopt()};
+    return {glb, taken_apart(glb), by_hand(), compressed_by_draco(), compressed_by_meshopt(), taken_apart(scenes::glb_bytes(moving()))};
 }
 
 }  // namespace myriad::fuzz
