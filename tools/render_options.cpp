@@ -57,6 +57,10 @@ void add_technique(CLI::App& command, passes::FrameSettings& s) {
     add_number(command, "--epsilon", s.maps.epsilon, 1e-3f, 1e6f, "largest diameter of a node in the cut, in texels of its map");
     add_whole(command, "--ism-points", s.maps.ism.points, 1, 1u << 24, "points that ism draws into each map, of the --samples there are");
     add_number(command, "--bias", s.bias, 0, 1e6f, "receiver bias of maps, in half diagonals of a texel");
+    add_parsed(command, "--update", "basic|incremental|lazy[:q]", show_update(s.maps),
+               "where a frame's cuts start: at the root; at the cuts of the frame before, which gives\nthe same cuts; or there, going down q edges at most (1): cuts may lag", [&s](const std::string& text) {
+        parse_update("--update", text, s.maps);
+    });
     add_whole(command, "--samples", s.log2_samples, 0, 28, "2^N points on the surface, the leaves of the tree that is cut");
     add_choice(command, "--append", s.maps.append, append_modes(), "how lists are appended to; images are the same");
     add_whole(command, "--seed", s.seed, 0, ~0u, "of the VPLs and the points; the scene does not depend on it");
@@ -94,6 +98,21 @@ const Choices<compute::AppendMode>& append_modes() {
     using compute::AppendMode;
     static const Choices<AppendMode> choices = {{"scan", AppendMode::scan}, {"atomic", AppendMode::atomic}};
     return choices;
+}
+
+std::string show_update(const passes::MapSettings& maps) {
+    using passes::CutUpdate;
+    return maps.update == CutUpdate::basic ? "basic" : maps.update == CutUpdate::incremental ? "incremental" : "lazy:" + std::to_string(maps.lazy_edges);
+}
+
+void parse_update(const std::string& option, const std::string& text, passes::MapSettings& maps) {
+    using passes::CutUpdate;
+    constexpr std::string_view prefix = "lazy:";
+    maps.lazy_edges = 1;
+    if (text.starts_with(prefix)) maps.lazy_edges = parse_whole(option, text.substr(prefix.size()), 1, 30);
+    else if (text != "basic" && text != "incremental" && text != "lazy")
+        throw InputError(option + " '" + text + "': give basic, incremental, lazy, or lazy:q with a whole number q from 1 on");
+    maps.update = text == "basic" ? CutUpdate::basic : text == "incremental" ? CutUpdate::incremental : CutUpdate::lazy;
 }
 
 const Choices<scenes::SkyChoice>& sky_choices() {

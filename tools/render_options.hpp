@@ -37,6 +37,9 @@ struct RenderOptions {
 
 const Choices<passes::Visibility>& visibilities();
 const Choices<compute::AppendMode>& append_modes();
+// --update: basic, incremental, lazy or lazy:q.
+std::string show_update(const passes::MapSettings& maps);
+void parse_update(const std::string& option, const std::string& text, passes::MapSettings& maps);
 const Choices<scenes::SkyChoice>& sky_choices();
 const Choices<scenes::Sharing>& sharings();
 const std::vector<std::string>& layer_names();

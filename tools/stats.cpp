@@ -44,6 +44,7 @@ ordered_json counters_json(const FrameRun& frame) {
         if (maps->list_capacity) {
             counters["node_views"] = maps->node_views;
             counters["cut"] = maps->cut;
+            if (maps->invalid) counters["cut_invalid"] = maps->invalid;
             counters["cut_groups"] = maps->groups;
             counters["list_capacity"] = maps->list_capacity;
             counters["list_peak"] = maps->list_peak;
@@ -132,6 +133,7 @@ ordered_json settings_json(const passes::FrameSettings& s, float vpl_bound) {
     if (s.visibility == passes::Visibility::ism) json["ism_points"] = s.maps.ism.points, json["log2_samples"] = s.log2_samples;
     if (s.visibility != passes::Visibility::manylods) return json;
     json["append"] = choice_name(append_modes(), s.maps.append);
+    json["update"] = show_update(s.maps);
     json["epsilon"] = shortest(s.maps.epsilon);
     json["log2_samples"] = s.log2_samples;
     return json;

@@ -73,6 +73,7 @@ Bsh::Bsh(engine::Device& device, const WorldTriangles& world, std::span<const Su
 void Bsh::refit(engine::Recorder& recorder, const engine::Array<vec3>& positions, const engine::Array<uvec4>& triangles,
                 const engine::Array<Instance>* instances, const OpacityReader& opacity) {
     assert((!shared_ || instances) && (!blends_ || opacity));
+    ++bounds_version_;
     for (size_t i = 0; i < levels_.size(); ++i) {
         const BshLevel& level = levels_[i];
         recorder.dispatch(i == 0 ? leaves_ : inner_,

@@ -45,6 +45,9 @@ public:
     // For a kernel that walks the tree.
     BshRef read(engine::Recorder& recorder) const;
 
+    // Goes up with each refit: who keeps something made of the bounds compares.
+    uint64_t bounds_version() const { return bounds_version_; }
+
     bool empty() const { return levels_.empty(); }
     uint leaves() const { return empty() ? 0 : levels_.front().nodes; }
     uint blocks() const { return empty() ? 0 : levels_.back().first_block(); }  // without the one over the root
@@ -65,6 +68,7 @@ public:
 private:
     engine::Program leaves_, inner_;
     uint depth_ = 0;
+    uint64_t bounds_version_ = 0;
     bool shared_, blends_;
     std::vector<BshLevel> levels_;
     float sample_radius_ = 0;

@@ -9,6 +9,14 @@ struct Evaluation {
     float slack, reach;
 };
 
+// How many node-views an item holds.
+int members(uint block, uint masks) { return block == push.blocks && masks == cut_no_view ? 0 : bitCount(masks); }
+
+void count_members(int change) {
+    const uint sum = group_sum(uint(change));  // wraps, as the counter does
+    if (group_elect() && sum != 0u) atomicAdd(push.memory.at[0].state.at[0].cut, sum);
+}
+
 void look(inout Evaluation e, View view, vec3 d, float r, uint height, uint where) {
     const float length = sqrt(dot(d, d));
     e.slack = min(e.slack, node_slack(view, d, length, r, height, where, float(push.map_size) / push.epsilon));

@@ -41,7 +41,7 @@ Ref<CarriedRefs> CarriedCut::memory(engine::Recorder& recorder) {
     return recorder.read(refs_);
 }
 
-void CarriedCut::record(engine::Recorder& recorder, const ManyLodsInputs& in, const CarrySettings& settings, bool bounds_moved) {
+void CarriedCut::record(engine::Recorder& recorder, const ManyLodsInputs& in, const CarrySettings& settings) {
     assert(in.first_view == first_view_ && in.limit == views_ && first_view_ + views_ <= cut_max_views && in.tree.blocks() < cut_max_blocks);
     if (in.tree.empty()) return lists_.begin(recorder, due_kernel_, in.view_count, 0, 0), lists_.end(recorder);
     const auto travel = [&] {
@@ -53,7 +53,8 @@ void CarriedCut::record(engine::Recorder& recorder, const ManyLodsInputs& in, co
     started_ = true;
     recorder.dispatch(travel_, travel(), views_);
 
-    uint flags = settings.everything || bounds_moved ? carry_all : 0u;
+    uint flags = settings.everything || in.tree.bounds_version() != bounds_version_ ? carry_all : 0u;
+    bounds_version_ = in.tree.bounds_version();
     const auto push = [&](const AppendRef& ref) {
         const BshRef tree = in.tree.read(recorder);
         return CarryPush{.lists = ref, .frames = tree.frames, .spheres = tree.spheres, .views = recorder.read(in.views),
@@ -84,7 +85,7 @@ CarryReport CarriedCut::report() const {
     std::memcpy(&s, report_.span().data(), sizeof s);
     CarryReport report;
     report.lists = lists_.report();
-    report.dropped = s.dropped, report.made = s.made, report.holes = s.holes, report.invalid = s.invalid;
+    report.cut = s.cut, report.dropped = s.dropped, report.made = s.made, report.holes = s.holes, report.invalid = s.invalid;
     report.due = report.lists.opened - report.made;  // what the two kinds of steps evaluated
     return report;
 }

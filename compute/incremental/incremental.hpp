@@ -9,6 +9,7 @@ namespace myriad::compute {
 // What a frame did to a carried cut; read after the submission.
 struct CarryReport {
     AppendReport lists;                    // `processed` counts node-views evaluated, `kept` is the length of the list
+    uint64_t cut = 0;                      // node-views in the cuts, culled ones included
     uint64_t due = 0, dropped = 0, made = 0, holes = 0;  // items
     uint64_t invalid = 0;                  // node-views of the cut that should be open (lazy)
     uint64_t items() const { return lists.kept - holes; }
@@ -25,12 +26,11 @@ public:
     // Room for `capacity` open blocks, at least one a view. Views [first_view, first_view + views) of those that exist.
     CarriedCut(engine::Device& device, AppendMode mode, uint64_t capacity, uint32_t first_view, uint32_t views);
 
-    // Forgets the cut: the next frame starts from the roots, and is not lazy. Due when the tree was built anew, or a frame overflowed.
+    // Forgets the cut: the next frame starts from the roots, and is not lazy. For a tree that was built anew.
     void restart() { started_ = false; }
 
-    // Brings the cut up to date. `in` names the same range of views as the constructor and the same epsilon and map size in every
-    // frame. `bounds_moved`: the tree was refitted since the last frame.
-    void record(engine::Recorder& recorder, const ManyLodsInputs& in, const CarrySettings& settings, bool bounds_moved);
+    // Brings the cut up to date. `in` names the same tree, range of views, epsilon and map size in every frame.
+    void record(engine::Recorder& recorder, const ManyLodsInputs& in, const CarrySettings& settings);
 
     // The cut for those who draw it: its kept list holds the groups, and holes that draw nothing.
     const AppendLists& lists() const { return lists_; }
@@ -43,6 +43,7 @@ private:
 
     uint32_t first_view_, views_;
     bool started_ = false;
+    uint64_t bounds_version_ = 0;  // that the cut was brought up to date with
     AppendLists lists_;
     engine::Program restart_, travel_, place_;
     AppendKernel due_kernel_, update_, open_;

@@ -8,13 +8,17 @@
 MYRIAD_BEGIN
 // The carried list holds an item for every block that is open in a view, also where none of its children is in the cut: a group
 // (cut_io.h) and its due. Items stay where they are from frame to frame. An item whose block is no longer open leaves a hole.
-const uint cut_hole = 0xffffffffu;  // both words of a hole's code: it draws nothing
-MYRIAD_FN bool cut_is_hole(uvec2 code) { return code.x == cut_hole && (code.y & 0xffffu) == 0xffffu; }
+MYRIAD_FN uvec2 cut_hole() { return uvec2(0xffffffffu, 0xffffu); }  // of no block and no view, with no node-view
+MYRIAD_FN bool cut_is_hole(uvec2 code) { return code == cut_hole(); }
+
+// The masks of the root's item in a view that does not exist: culled, and a mark where no slot is.
+const uint cut_no_view = 0x300u;
 
 // Where the list ends, and the places that have become free in it.
 struct CarriedState {
     uint items;      // and holes: the list ends here
     uint holes;      // free.at[0 .. holes)
+    uint cut;        // node-views in the cuts of the views that exist
     uint dropped;    // whose owner is no longer open
     uint made;       // blocks newly opened
     uint invalid;    // lazy: node-views in the cut that should be open

@@ -23,6 +23,7 @@ void main() {
         }
         if (append_pass == append_pass_count) memory.found.at[index] = due;
     }
+    if (append_pass != append_pass_write) count_members(bitCount(found & 0xffffu));
     const bool has = append_has(index, push.lists);
     found = append_payload(index, found, push.lists);
 

@@ -10,9 +10,9 @@ void main() {
     const uint i = thread_index();
     if (i >= push.limit) return;
     CarriedRefs memory = push.memory.at[0];
-    memory.codes.at[i] = cut_pack(push.over_root, push.first_view + i, 0x100u);
+    memory.codes.at[i] = cut_pack(push.over_root, push.first_view + i, cut_no_view);
     memory.dues.at[i] = Due(-1.0f, 0.0f);
     memory.travels.at[i] = Travel(0.0f, 0.0f, 0u);
     memory.before.at[i] = View(vec3(0.0f), 0.0f, vec3(0.0f), 0.0f);
-    if (i == 0u) memory.state.at[0] = CarriedState(push.limit, 0u, 0u, 0u, 0u);
+    if (i == 0u) memory.state.at[0] = CarriedState(push.limit, 0u, 0u, 0u, 0u, 0u);
 }

@@ -18,16 +18,18 @@ void main() {
     uint item = 0u;
     if (append_has(index, push.lists)) item = push.lists.items.at[index].x;
     uint found = 0u;  // opened children << 16 | dropped
+    int change = 0;
     const uvec2 code = memory.codes.at[item];
     const CutGroup group = cut_unpack(code);
     if (append_decides(index, push.lists)) {
         const Travel t = memory.travels.at[group.view - push.first_view];
         const bool exists = (t.flags & travel_exists) != 0u;
         const bool root = group.block == push.blocks;
-        Evaluation e = Evaluation(0x100u, root, 1e30f, 0.0f);  // of a view that does not exist: the root is culled
+        Evaluation e = Evaluation(cut_no_view, root, 1e30f, 0.0f);
         if (exists) e = evaluate(group.block, push.views.at[group.view]);
+        const uint old = group.drawn | group.culled;
+        change = (e.open ? members(group.block, e.found & 0xffffu) : 0) - members(group.block, group.drawn | (group.culled << 8));
         if (e.open) {
-            const uint old = group.drawn | group.culled;
             found = e.found & (old << 16);
             memory.codes.at[item] = cut_pack(group.block, group.view, e.found & 0xffffu);
             memory.dues.at[item] = due_after(t, e.slack, e.reach);
@@ -35,6 +37,7 @@ void main() {
             found = dropped;
         }
     }
+    if (append_pass != append_pass_write) count_members(change);
     found = append_payload(index, found, push.lists);
 
     uint open = (found >> 16) & 0xffu;
@@ -42,7 +45,7 @@ void main() {
     if (!append_writes) return;
     if ((found & dropped) != 0u) {
         memory.free.at[memory.state.at[0].holes + at.y] = item;
-        memory.codes.at[item] = uvec2(cut_hole);
+        memory.codes.at[item] = cut_hole();
     }
     for (uint next = at.x; open != 0u; ++next, open &= open - 1u)
         append_next(next, uvec2(bsh_block_of(8u * group.block + findLSB(open), push.leaves, push.blocks), group.view), push.lists);

@@ -22,8 +22,9 @@ ViewMaps::ViewMaps(engine::Device& device, const MapSettings& settings, uint32_t
     make_atlas();
     switch (settings.method) {
         case MapMethod::manylods: {
-            manylods_.emplace(device);
             splat_.emplace(device);
+            if (settings.update != CutUpdate::basic) break;  // lists come with the first frame, one a batch
+            manylods_.emplace(device);
             const uint64_t affordable = device_.memory_free() / 2 / (4 * sizeof(uvec2));
             const uint64_t kept = std::min({groups_guess(batch_), affordable, AppendLists::max_capacity});
             make_lists(std::max<uint64_t>(kept - kept / 4, batch_), std::max<uint64_t>(kept, 1));
@@ -61,6 +62,13 @@ void ViewMaps::make_lists(uint64_t next, uint64_t kept) {
     lists_.emplace(device_, settings_.append, next, kept);
 }
 
+// Views [index * batch, …) and what their cuts are carried in.
+void ViewMaps::make_carried(uint32_t index, uint64_t capacity) {
+    if (carried_.size() <= index) carried_.resize(index + 1);
+    carried_[index].reset();
+    carried_[index] = std::make_unique<compute::CarriedCut>(device_, settings_.append, capacity, index * batch_, batch_);
+}
+
 void ViewMaps::record(engine::Recorder& recorder, const MapScene& scene, const engine::Array<View>& views, const engine::Array<uint>& count,
                       uint32_t first) {
     if (ism_) {
@@ -74,12 +82,22 @@ void ViewMaps::record(engine::Recorder& recorder, const MapScene& scene, const e
         return;
     }
     const compute::Bsh& tree = *scene.tree;
-    {
+    const compute::ManyLodsInputs cut{tree, views, count, first, batch_, settings_.epsilon, settings_.map_size};
+    if (manylods_) {
         auto scope = recorder.scope("cut");
-        manylods_->record(recorder, *lists_, {tree, views, count, first, batch_, settings_.epsilon, settings_.map_size});
+        manylods_->record(recorder, *lists_, cut);
+    } else {
+        const uint32_t index = first / batch_;
+        if (carried_.size() <= index || !carried_[index]) {
+            const uint64_t affordable = device_.memory_free() / 2 / (compute::CarriedCut::bytes(device_, settings_.append, 1024, 0) / 1024);
+            make_carried(index, std::max<uint64_t>(std::min({groups_guess(batch_), affordable, AppendLists::max_capacity}), batch_));
+        }
+        carried_now_ = carried_[index].get();
+        auto scope = recorder.scope("cut");
+        carried_now_->record(recorder, cut, {.everything = settings_.revalidate, .edges = settings_.update == CutUpdate::lazy ? settings_.lazy_edges : 0});
     }
     auto scope = recorder.scope("splat");
-    splat_->record(recorder, {*lists_, tree, views, first, settings_.map_size}, atlas_);
+    splat_->record(recorder, {*lists(), tree, views, first, settings_.map_size}, atlas_);
 }
 
 void ViewMaps::place(engine::Recorder& recorder, const MapScene& scene) {
@@ -87,36 +105,52 @@ void ViewMaps::place(engine::Recorder& recorder, const MapScene& scene) {
 }
 
 bool ViewMaps::accept() {
-    if (!lists_) return ++counters_.batches;
-    const compute::AppendReport report = lists_->report();
+    if (!lists()) return ++counters_.batches;
+    const compute::AppendReport report = lists()->report();
     counters_.list_peak = std::max({counters_.list_peak, report.next_needed, report.kept_needed});
-    counters_.list_capacity = std::max(lists_->next_capacity(), lists_->kept_capacity());
-    if (report.ok()) {
-        ++counters_.batches;
-        counters_.node_views += report.processed;
+    counters_.list_capacity = std::max(lists()->next_capacity(), lists()->kept_capacity());
+    if (!report.ok()) return grow(report), false;
+    ++counters_.batches;
+    counters_.node_views += report.processed;
+    counters_.groups += report.kept;
+    if (!carried_now_) {
         counters_.cut += report.processed - report.opened;
-        counters_.groups += report.kept;
         return true;
     }
+    const compute::CarryReport carried = carried_now_->report();
+    counters_.cut += carried.cut;
+    counters_.invalid += carried.invalid;
+    return true;
+}
+
+uint64_t ViewMaps::list_bytes(uint64_t next, uint64_t kept) const {
+    return carried_now_ ? compute::CarriedCut::bytes(device_, settings_.append, kept, batch_) : AppendLists::bytes(device_, settings_.append, next, kept);
+}
+
+// Longer lists, or fewer views at once, for what `report` says was missing.
+void ViewMaps::grow(const compute::AppendReport& report) {
     ++counters_.redone;
     // A quarter more than was needed: the next frame's need differs, and an overflowed step hides what came after it.
     auto grown = [](uint64_t needed, uint64_t capacity) { return needed > capacity ? needed + needed / 4 : capacity; };
-    const uint64_t next = grown(report.next_needed, lists_->next_capacity());
-    const uint64_t kept = grown(report.kept_needed, lists_->kept_capacity());
-    const uint64_t old = AppendLists::bytes(device_, settings_.append, lists_->next_capacity(), lists_->kept_capacity());
-    const uint64_t need = AppendLists::bytes(device_, settings_.append, next, kept);
+    uint64_t next = grown(report.next_needed, lists()->next_capacity());
+    uint64_t kept = grown(report.kept_needed, lists()->kept_capacity());
+    if (carried_now_) next = kept = std::max(next, kept);
+    const uint64_t old = list_bytes(lists()->next_capacity(), lists()->kept_capacity()), need = list_bytes(next, kept);
     // The lists' counters and the scan's upper levels come on top.
     const bool fits = std::max(next, kept) <= AppendLists::max_capacity && need + need / 256 + 4096 <= device_.memory_free() + old;
-    if (fits) {
+    if (fits && carried_now_) {
+        for (uint32_t i = 0; i < carried_.size(); ++i)
+            if (carried_[i].get() == carried_now_) return carried_now_ = nullptr, make_carried(i, kept);
+    } else if (fits) {
         make_lists(next, kept);
-    } else if (batch_ > multiple_) {
+    } else if (!carried_now_ && batch_ > multiple_) {
         halve();
         make_atlas();
     } else {
         throw OutOfMemory("the lists of " + std::to_string(batch_) + " views need " + std::to_string((need >> 20) + 1) +
-                          " MiB, which --memory-limit does not leave; raise it, or lower --map-size, or raise --epsilon");
+                          " MiB, which --memory-limit does not leave; raise it, or lower --map-size, or raise --epsilon" +
+                          (carried_now_ ? ", or give --update basic, which keeps the cuts of one batch of views only" : ""));
     }
-    return false;
 }
 
 }  // namespace myriad::passes

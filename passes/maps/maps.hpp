@@ -1,8 +1,11 @@
 // The maps of many views, in as many batches as memory asks for; see README.md.
 #pragma once
 
+#include <memory>
 #include <optional>
+#include <vector>
 
+#include "compute/incremental/incremental.hpp"
 #include "compute/manylods/manylods.hpp"
 #include "passes/brute/brute.hpp"
 #include "passes/ism/ism.hpp"
@@ -17,6 +20,13 @@ enum class MapMethod {
     ism,       // few points of the surface, others in each view, and holes filled
 };
 
+// Where a frame's cuts start from (ManyLoDs 3.1 to 3.3).
+enum class CutUpdate {
+    basic,        // the roots
+    incremental,  // the cuts of the frame before
+    lazy,         // those, and only so many edges are walked down
+};
+
 struct MapSettings {
     compute::AppendMode append = compute::AppendMode::scan;
     uint32_t map_size = 32;   // texels a side of a half map
@@ -24,6 +34,9 @@ struct MapSettings {
     MapMethod method = MapMethod::manylods;
     IsmSettings ism;
     uint32_t seed = 1;        // ism
+    CutUpdate update = CutUpdate::basic;
+    uint32_t lazy_edges = 1;  // q of the paper, at least 1
+    bool revalidate = false;  // incremental and lazy: every node-view in every frame, as the paper does
 };
 
 // What is drawn; a method needs but its own.
@@ -34,6 +47,7 @@ struct MapScene {
 
 struct MapCounters {
     uint64_t node_views = 0;  // tested
+    uint64_t invalid = 0;     // lazy: node-views in the cuts that are larger than epsilon allows
     uint64_t cut = 0;         // node-views in the cuts, culled ones included
     uint64_t groups = 0;      // that hold them
     uint64_t list_peak = 0, list_capacity = 0;  // items of the longest list, and what there was room for
@@ -65,11 +79,16 @@ public:
     bool accept();
 
     const engine::Array<uint>& atlas() const { return atlas_; }
-    const compute::AppendLists* lists() const { return lists_ ? &*lists_ : nullptr; }  // null: the method has none, nothing overflows
+    const compute::AppendLists* lists() const { return lists_ ? &*lists_ : carried_now_ ? &carried_now_->lists() : nullptr; }  // null: the method has none, nothing overflows
+    // For a tree that was built anew: cuts of the old one are forgotten.
+    void forget() { carried_now_ = nullptr, carried_.clear(); }
     MapCounters take_counters() { return std::exchange(counters_, {}); }
 
 private:
     void make_lists(uint64_t next, uint64_t kept);
+    void make_carried(uint32_t index, uint64_t capacity);
+    void grow(const compute::AppendReport& report);
+    uint64_t list_bytes(uint64_t next, uint64_t kept) const;
     void make_atlas();
     bool is_handy(uint32_t views) const;
     void halve();
@@ -81,7 +100,9 @@ private:
     // Of the method, the others do not exist.
     std::optional<compute::ManyLods> manylods_;
     std::optional<SplatPass> splat_;
-    std::optional<compute::AppendLists> lists_;
+    std::optional<compute::AppendLists> lists_;                  // basic
+    std::vector<std::unique_ptr<compute::CarriedCut>> carried_;  // incremental and lazy: one a batch
+    compute::CarriedCut* carried_now_ = nullptr;                 // of the batch that was recorded last
     std::optional<BrutePass> brute_;
     std::optional<IsmPass> ism_;
     engine::Array<uint> atlas_;

@@ -154,6 +154,51 @@ TEST_F(MapsTest, the_memory_limit_changes_batches_and_nothing_else) {
     }
 }
 
+// Frames in which views drift and jump: the maps of cuts that are carried are those of basic cuts, in batches and with lists that grow.
+TEST_F(MapsTest, carried_cuts_draw_what_basic_cuts_draw) {
+    const uint32_t n = 40;
+    auto vpls = random_vpls(n);
+    compute::Bsh tree(device, world_triangles(scene.triangles), log2_samples, 1);
+    const auto positions = engine::upload(device, "test", "test input", scene.triangles.positions);
+    const auto triangles = engine::upload(device, "test", "test input", scene.triangles.triangles);
+    const auto count = engine::upload(device, "test", "test input", std::vector<uint>{n});
+    engine::Recorder recorder(device);
+    tree.refit(recorder, positions, triangles);
+    recorder.submit_and_wait();
+    MapSettings settings{AppendMode::scan, 16, 0.3f};
+    ViewMaps basic(device, settings, n, 4);
+    settings.update = CutUpdate::incremental;
+    ViewMaps carried(device, settings, n, 4);
+    uint64_t basic_views = 0, carried_views = 0;
+    for (int frame = 0; frame < 6; ++frame) {
+        SCOPED_TRACE(frame);
+        std::vector<View> views;
+        for (Vpl& v : vpls) {
+            if (frame && random() % 3) v.position += 0.01f * direction();
+            if (random() % 20 == 0) v = random_vpls(1)[0];
+            views.push_back({v.position, 0, unpack_direction(v.normal), 1});
+        }
+        const auto on = engine::upload(device, "test", "test input", views);
+        const auto draw = [&](ViewMaps& maps) {
+            std::vector<uint> atlas;
+            for (uint32_t first = 0; first < n;) {
+                maps.record(recorder, {.tree = &tree}, on, count, first);
+                recorder.submit_and_wait();
+                if (!maps.accept()) continue;
+                const auto part = engine::download(device, maps.atlas());
+                atlas.insert(atlas.end(), part.begin(), part.end());
+                first += maps.batch();
+            }
+            return atlas;
+        };
+        EXPECT_TRUE(same(draw(basic), draw(carried)));
+        const MapCounters b = basic.take_counters(), c = carried.take_counters();
+        EXPECT_EQ(b.cut, c.cut);
+        if (frame) basic_views += b.node_views, carried_views += c.node_views;
+    }
+    EXPECT_LT(carried_views, basic_views / 2);
+}
+
 TEST_F(MapsTest, views_that_do_not_exist_see_nothing) {
     const auto vpls = random_vpls(9);
     const Outcome all = run(device, vpls, {AppendMode::scan, 8, 1});
