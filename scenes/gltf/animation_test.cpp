@@ -9,7 +9,7 @@
 namespace myriad::scenes {
 namespace {
 
-class Animated : public Gltf {
+class GltfAnimated : public Gltf {
 protected:
     int times(const std::vector<float>& t) {
         const int a = accessor(view(t), f32, "SCALAR", t.size());
@@ -62,7 +62,7 @@ protected:
     }
 };
 
-TEST_F(Animated, ASkinWithAClip) {
+TEST_F(GltfAnimated, ASkinWithAClip) {
     skinned();
     channel(2, "rotation", times({0, 1}), floats({0, 0, 0, 1, 0, 0, std::sqrt(0.5f), std::sqrt(0.5f)}, "VEC4", 4));
     for (const bool glb : {false, true}) {
@@ -80,7 +80,7 @@ TEST_F(Animated, ASkinWithAClip) {
     }
 }
 
-TEST_F(Animated, EveryInterpolation) {
+TEST_F(GltfAnimated, EveryInterpolation) {
     square();
     channel(0, "translation", times({0, 2}), floats({0, 0, 0, 4, 0, 0}, "VEC3", 3), "STEP");
     Scene scene = read();
@@ -99,7 +99,7 @@ TEST_F(Animated, EveryInterpolation) {
 }
 
 // KHR_mesh_quantization and the core's: rotations and weights may be normalised integers.
-TEST_F(Animated, NormalisedIntegers) {
+TEST_F(GltfAnimated, NormalisedIntegers) {
     skinned();
     primitive()["attributes"]["WEIGHTS_0"] = accessor(view(std::vector<uint8_t>{255, 0, 0, 0, 255, 0, 0, 0, 127, 128, 0, 0, 255, 0, 0, 0}), u8, "VEC4", 4, 0, true);
     primitive()["attributes"]["JOINTS_0"] = accessor(view(std::vector<uint16_t>{0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0}), u16, "VEC4", 4);
@@ -114,7 +114,7 @@ TEST_F(Animated, NormalisedIntegers) {
     expect_kept(scene);
 }
 
-TEST_F(Animated, EightJointsAVertex) {
+TEST_F(GltfAnimated, EightJointsAVertex) {
     skinned();
     primitive()["attributes"]["WEIGHTS_0"] = floats({.5f, 0, 0, 0, .5f, 0, 0, 0, .5f, 0, 0, 0, .5f, 0, 0, 0}, "VEC4", 4);
     primitive()["attributes"]["WEIGHTS_1"] = floats({.5f, 0, 0, 0, .5f, 0, 0, 0, .5f, 0, 0, 0, .5f, 0, 0, 0}, "VEC4", 4);
@@ -128,7 +128,18 @@ TEST_F(Animated, EightJointsAVertex) {
     EXPECT_NE(read().warnings.at(0).find("more than eight joints"), std::string::npos);
 }
 
-TEST_F(Animated, MorphTargetsSparseToo) {
+// The sum may be off by 2e-7 a weight, says Khronos' validator; files in use are off by more. Once it is right it stays.
+TEST_F(GltfAnimated, WeightsNearlySumToOne) {
+    valid = false;
+    skinned();
+    primitive()["attributes"]["WEIGHTS_0"] = floats({0.3333331f, 0.6666661f, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0.1f, 0.9000001f, 0, 0}, "VEC4", 4);
+    const Scene scene = read();
+    EXPECT_TRUE(scene.warnings.empty()) << scene.warnings[0];
+    for (const glm::vec4& w : scene.meshes[0].primitives[0].joint_weights[0]) EXPECT_NEAR(double(w.x) + double(w.y), 1, 1.01e-7);
+    expect_kept(scene);
+}
+
+TEST_F(GltfAnimated, MorphTargetsSparseToo) {
     square();
     // Vertex 2 goes up by 1; of the other target, quantised, all go along z by a half.
     doc["accessors"].push_back({{"componentType", f32}, {"type", "VEC3"}, {"count", 4}, {"min", {0, 0, 0}}, {"max", {0, 1, 0}},
@@ -157,7 +168,7 @@ TEST_F(Animated, MorphTargetsSparseToo) {
     expect_kept(scene);
 }
 
-TEST_F(Animated, LightsAndCamerasMove) {
+TEST_F(GltfAnimated, LightsAndCamerasMove) {
     square();
     doc["nodes"] = {{{"mesh", 0}}, {{"name", "boom"}, {"children", {2, 3}}}, {{"name", "eye"}, {"camera", 0}},
                     {{"name", "lamp"}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}}};
@@ -177,14 +188,14 @@ TEST_F(Animated, LightsAndCamerasMove) {
     expect_kept(scene);
 }
 
-TEST_F(Animated, WithoutMovementThereAreNoNodes) {
+TEST_F(GltfAnimated, WithoutMovementThereAreNoNodes) {
     square();
     EXPECT_TRUE(read().nodes.empty());
     channel(0, "translation", times({0, 1}), floats({0, 0, 0, 4, 0, 0}, "VEC3", 3));
     EXPECT_EQ(read().nodes.size(), 1u);
 }
 
-TEST_F(Animated, InstancesOfOneNodeMoveWithIt) {
+TEST_F(GltfAnimated, InstancesOfOneNodeMoveWithIt) {
     square();
     doc["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] = floats({0, 0, 0, 5, 0, 0}, "VEC3", 3);
     channel(0, "translation", times({0, 1}), floats({0, 0, 0, 0, 0, 3}, "VEC3", 3));
@@ -195,7 +206,7 @@ TEST_F(Animated, InstancesOfOneNodeMoveWithIt) {
     expect_near(t.positions[4], {5, 0, 3});
 }
 
-TEST_F(Animated, HarmlessDefectsAreCounted) {
+TEST_F(GltfAnimated, HarmlessDefectsAreCounted) {
     valid = false;
     skinned();
     primitive()["attributes"]["WEIGHTS_0"] = floats({2, 2, 0, 0, 0, 0, 0, 0, -1, 1, 0, 0, NAN, 1, 0, 0}, "VEC4", 4);
@@ -222,7 +233,7 @@ TEST_F(Animated, HarmlessDefectsAreCounted) {
     EXPECT_EQ(scene.instances[0].skin, none);
 }
 
-TEST_F(Animated, BrokenSkinsAreRefusedByPlace) {
+TEST_F(GltfAnimated, BrokenSkinsAreRefusedByPlace) {
     skinned();
     const json good = doc;
     const auto refuse = [&](std::initializer_list<const char*> words, auto change) {
@@ -243,7 +254,7 @@ TEST_F(Animated, BrokenSkinsAreRefusedByPlace) {
     refuse({"cycle"}, [&] { doc["nodes"][2]["children"] = {1}; });
 }
 
-TEST_F(Animated, BrokenClipsAreRefusedByPlace) {
+TEST_F(GltfAnimated, BrokenClipsAreRefusedByPlace) {
     square();
     channel(0, "translation", times({0, 1}), floats({0, 0, 0, 4, 0, 0}, "VEC3", 3));
     const json good = doc;
@@ -264,7 +275,7 @@ TEST_F(Animated, BrokenClipsAreRefusedByPlace) {
     refuse({"channel 0", "matrix"}, [&](json&) { doc["nodes"][0]["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}; });
 }
 
-TEST_F(Animated, BrokenMorphTargetsAreRefusedByPlace) {
+TEST_F(GltfAnimated, BrokenMorphTargetsAreRefusedByPlace) {
     square();
     primitive()["targets"] = {{{"POSITION", floats(std::vector<float>(12), "VEC3", 3)}}};
     const json good = doc;

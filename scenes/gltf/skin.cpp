@@ -27,7 +27,7 @@ void normalise(Primitive& p, JointDefects& defects) {
         defects.sums += bad || std::abs(sum - 1) > rounding;
         if (!(sum > 0)) {
             p.joint_weights[0][i] = glm::vec4(1, 0, 0, 0);  // with its first joint, as others do
-        } else if (std::abs(sum - 1) > 1e-6) {
+        } else if (std::abs(sum - 1) > 1e-7) {  // once they were made to, rounding leaves less
             for (auto& set : p.joint_weights)
                 if (!set.empty()) set[i] = glm::vec4(glm::dvec4(set[i]) / sum);
         }
