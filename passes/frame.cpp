@@ -65,7 +65,7 @@ Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::T
       lights_(step("listing lights", [&] { return LightTable(device, scene, triangles, data); })),
       bvh_(step("building the ray tree", [&] { return derived.bvh(device, compute::BvhQuality::quick, geometry_.opacity()); })),
       gbuffer_(device, settings.width, settings.height, bvh_.constants()), compose_(device, settings.width, settings.height),
-      exhausted_(device, "frame", "exhausted walks", 1), host_words_(device, "frame", "frame words", 5, engine::Location::host) {
+      exhausted_(device, "frame", "exhausted walks", 1), host_words_(device, "frame", "frame words", 6, engine::Location::host) {
     background_ = scene.background;
     const compute::WorldTriangles& world = derived.world();
     const glm::vec3 far = glm::max(glm::abs(triangles.lo), glm::abs(triangles.hi));
@@ -79,15 +79,13 @@ Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::T
     size_.lights = lights_.count();
     size_.bvh_nodes = bvh_.nodes();
 
+    if (DeformPass::needed(triangles)) deform_.emplace(device, triangles.motion);
     if (DirectPass::needed(lights_)) direct_.emplace(device, settings.width, settings.height, 0, bvh_.constants());
     if (lights_.power() > 0 && settings.vpls > 0 && !triangles.triangles.empty()) make_indirect(derived, triangles.hi - triangles.lo);
     step("compiling kernels", [&] { recorder_.warm_up(); });
-    if (!vpl_) return;
-    step("finding where light goes", [&] { vpl_->prepare(recorder_, geometry_, bvh_, lights_, settings.bounces, settings.seed); });
+    if (vpl_) step("finding where light goes", [&] { prepare_paths(); });
     if (maps_) maps_->place(recorder_, map_scene());
-    if (!tree_) return;
-    auto scope = recorder_.scope("refit");
-    tree_->refit(recorder_, geometry_.positions(), geometry_.triangles(), geometry_.instances(), geometry_.opacity());
+    if (tree_) refit_tree();
 }
 
 void Frame::make_indirect(compute::Derived& derived, const vec3& extent) {
@@ -111,12 +109,49 @@ void Frame::make_indirect(compute::Derived& derived, const vec3& extent) {
     maps_.emplace(device_, map_settings(settings), settings.vpls, block_ * block_, &derived.world(), &points);
 }
 
+void Frame::prepare_paths() { vpl_->prepare(recorder_, geometry_, bvh_, lights_, settings_.bounces, settings_.seed); }
+
+void Frame::refit_tree() {
+    auto scope = recorder_.scope("refit");
+    tree_->refit(recorder_, geometry_.positions(), geometry_.triangles(), geometry_.instances(), geometry_.opacity());
+}
+
+void Frame::move_to(const scenes::Moment& moment) {
+    lights_.move(moment.lights);
+    if (!deform_ || !deform_->differs(moment)) return;
+    moved_ = true;
+    {
+        auto scope = recorder_.scope("deform");
+        deform_->record(recorder_, geometry_, moment);
+        lights_.follow(recorder_, geometry_);
+    }
+    {
+        auto scope = recorder_.scope("refit rays");
+        bvh_.refit(recorder_, geometry_.positions(), geometry_.triangles());
+    }
+    if (maps_) maps_->place(recorder_, map_scene());
+    if (tree_) refit_tree();
+}
+
 void Frame::report(const std::string& stage, double done) const {
     if (settings_.progress) settings_.progress(stage, done);
 }
 
 void Frame::render(const scenes::Camera& camera) {
     counters_ = {};
+    render_once(camera);
+    // Since paths were prepared, lights or surfaces have moved so that more VPLs live than there is room for. Fewer paths, then.
+    while (vpl_ && host_words_.span()[5] > 0) {
+        prepare_paths();
+        counters_.prepared = counters_.prepared.value_or(0) + 1;
+        render_once(camera);
+    }
+    moved_ = false;
+    times_ = recorder_.take_times();
+    report("done", 1);
+}
+
+void Frame::render_once(const scenes::Camera& camera) {
     const float pixel_angle = 2 * std::tan(camera.yfov / 2) / float(settings_.height);
     {
         auto scope = recorder_.scope("gbuffer");
@@ -140,11 +175,10 @@ void Frame::render(const scenes::Camera& camera) {
     if (vpl_) counters_.vpls = host_words_.span()[0];
     if (maps_) counters_.maps = maps_->take_counters();
     if (settings_.visibility == Visibility::brute && vpl_) counters_.maps->triangle_views = size_.triangles * *counters_.vpls;
-    times_ = recorder_.take_times();
-    report("done", 1);
 }
 
-// The few words of a frame that the host looks at: the number of VPLs, and whether every ray walk came to its end.
+// The few words of a frame that the host looks at: the number of VPLs, whether there was room for all, and whether every ray walk came
+// to its end.
 void Frame::read_back_words() {
     std::fill(host_words_.span().begin(), host_words_.span().end(), 0u);
     auto fetch = [&](const engine::Array<uint>& from, uint64_t to, uint64_t word = 0) {
@@ -152,9 +186,9 @@ void Frame::read_back_words() {
     };
     fetch(gbuffer_.exhausted(), 1);
     if (direct_) fetch(direct_->exhausted(), 2);
-    if (vpl_) fetch(vpl_->count(), 0, 1), fetch(vpl_->exhausted(), 3), fetch(exhausted_, 4);
+    if (vpl_) fetch(vpl_->count(), 0, 1), fetch(vpl_->count(), 5, 2), fetch(vpl_->exhausted(), 3), fetch(exhausted_, 4);
     recorder_.submit_and_wait();
-    for (uint exhausted : host_words_.span().subspan(1))
+    for (uint exhausted : host_words_.span().subspan(1, 4))
         if (exhausted)
             throw DeviceError("a ray's walk needs more than the " + std::to_string(device_.loop_limit()) +
                               " loop iterations that this driver allows; use Mesa 23 or later, or a scene with less overlap");

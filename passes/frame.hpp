@@ -9,6 +9,7 @@
 
 #include "compute/derived/derived.hpp"
 #include "passes/compose/compose.hpp"
+#include "passes/deform/deform.hpp"
 #include "passes/direct/direct.hpp"
 #include "passes/filter/filter.hpp"
 #include "passes/gather/gather.hpp"
@@ -60,6 +61,7 @@ struct BuildStep {
 
 struct FrameCounters {
     std::optional<uint64_t> vpls;       // alive
+    std::optional<uint64_t> prepared;   // times that light paths were prepared anew, since more VPLs lived than there is room for
     std::optional<MapCounters> maps;    // visibility by maps
 };
 
@@ -67,6 +69,11 @@ class Frame {
 public:
     // Uploads the scene and builds what the settings need. Throws InputError for settings out of range, OutOfMemory.
     Frame(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles, const FrameSettings& settings);
+
+    // Moves everything to another moment of the scene's motion, for renders from now on: vertices, and after them trees and emitters, where
+    // any move; lights. A frame begins at second 0. A scene that stands still may have its lights moved all the same.
+    void move_to(const scenes::Moment& moment);
+    bool moved() const { return moved_; }  // vertices have, since the last render
 
     // Renders into the arrays below. Throws OutOfMemory when lists cannot grow as they must.
     void render(const scenes::Camera& camera);
@@ -96,6 +103,9 @@ private:
           const FrameSettings& settings);
     void make_indirect(compute::Derived& derived, const vec3& extent);
     MapScene map_scene() const { return {.tree = tree(), .geometry = &geometry_}; }
+    void prepare_paths();
+    void refit_tree();
+    void render_once(const scenes::Camera& camera);
     template <class Make>
     auto step(const char* name, Make make);  // reports it and times it
     void gather_indirect(float pixel_angle);
@@ -113,6 +123,7 @@ private:
     float reach_ = 0, vpl_bound_ = 0;
     uint32_t block_ = 1;
     // Passes that the scene or the settings do not need do not exist.
+    std::optional<DeformPass> deform_;
     GBufferPass gbuffer_;
     std::optional<DirectPass> direct_;
     std::optional<VplPass> vpl_;
@@ -123,6 +134,7 @@ private:
     ComposePass compose_;
     std::optional<TonemapPass> tonemap_;
     engine::Array<uint> exhausted_, host_words_;
+    bool moved_ = false;
     SceneSize size_;
     FrameCounters counters_;
     std::vector<engine::PassTime> times_;

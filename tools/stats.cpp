@@ -40,6 +40,7 @@ ordered_json scene_json(const RunRecord& run) {
 ordered_json counters_json(const FrameRun& frame) {
     ordered_json counters = ordered_json::object();
     if (frame.counters.vpls) counters["vpls"] = *frame.counters.vpls;
+    if (frame.counters.prepared) counters["light_paths_prepared"] = *frame.counters.prepared;
     if (const auto& maps = frame.counters.maps) {
         if (maps->list_capacity) {
             counters["node_views"] = maps->node_views;
@@ -72,6 +73,7 @@ double mebibytes(uint64_t bytes) { return double(bytes) / (1 << 20); }
 std::string counters_text(const FrameRun& frame) {
     std::string text;
     if (frame.counters.vpls) text += format("%llu VPLs alive", static_cast<unsigned long long>(*frame.counters.vpls));
+    if (frame.counters.prepared) text += ", light paths prepared anew";
     const auto& maps = frame.counters.maps;
     if (maps && maps->triangle_views) text += format(", %llu triangles drawn in views, %u batches", static_cast<unsigned long long>(maps->triangle_views), maps->batches);
     if (maps && maps->list_capacity)

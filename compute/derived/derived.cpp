@@ -53,9 +53,10 @@ Derived::Derived(WorldTriangles world, engine::Cache* cache)
     : world_(std::move(world)), cache_(engine::program_id().empty() ? nullptr : cache) {
     if (!cache_) return;
     const uint64_t version = builder_version();
+    const uint32_t first_moving = world_.moves() ? world_.first_moving : ~0u;
     const auto opacity = world_.opacity.content();
     const engine::Bytes parts[] = {engine::program_id(), bytes(version), bytes(world_.positions), bytes(world_.triangles), bytes(world_.instances),
-                                   opacity[0], opacity[1], opacity[2], opacity[3], opacity[4]};
+                                   bytes(first_moving), opacity[0], opacity[1], opacity[2], opacity[3], opacity[4]};
     content_ = engine::digest(parts);
 }
 

@@ -17,7 +17,12 @@ struct WorldTriangles {
     std::span<const glm::uvec4> triangles;  // as stored: three indices into positions, and a fourth word that is the caller's
     std::vector<Instance> instances = {};   // by ids, without gaps; empty: a triangle's id is its index
     Opacity opacity = {};                   // of triangles as stored
+    // Stored triangles from here on move from frame to frame: trees are refitted over them. They are in world space; where they are now
+    // is where they start.
+    uint32_t first_moving = ~0u;
 
+    bool moves(uint32_t stored) const { return stored >= first_moving; }
+    bool moves() const { return first_moving < triangles.size(); }  // any
     bool shared() const { return !instances.empty(); }
     uint32_t count() const { return shared() ? instances.back().first_id + instances.back().count : uint32_t(triangles.size()); }
 

@@ -22,15 +22,6 @@ namespace {
 
 constexpr size_t grain = 1 << 14;  // triangles that a thread takes at a time
 
-// Boxes are enlarged by 2^-21 of the triangle's extent and of its coordinates (8 u each): the triangle test rounds its
-// vertices by up to 3 u of their distances from the ray's origin, so that it accepts rays that pass the exact box by as
-// much; the part that grows with the ray's length is in the box test's own slack. A box then also contains its triangle
-// strictly, which rays in the plane of a box's face rely on.
-vec3 padding(const BvhTriangle& t) {
-    const vec3 lo = min(t.p0, min(t.p1, t.p2)), hi = max(t.p0, max(t.p1, t.p2)), extent = hi - lo;
-    return (vec3(max(extent.x, max(extent.y, extent.z))) + max(abs(lo), abs(hi))) * 4.7683716e-7f;
-}
-
 // What Embree's builder makes: inner nodes of up to eight children, leaves of up to four triangles.
 struct Built {
     uint count = 0;
@@ -82,7 +73,7 @@ void split(const RTCBuildPrimitive* primitive, unsigned axis, float position, RT
             grow(side[0], cut), grow(side[1], cut);
         }
     }
-    const vec3 pad = padding(t);
+    const vec3 pad = bvh_padding(min(t.p0, min(t.p1, t.p2)), max(t.p0, max(t.p1, t.p2)));
     const vec3 lo(primitive->lower_x, primitive->lower_y, primitive->lower_z), hi(primitive->upper_x, primitive->upper_y, primitive->upper_z);
     RTCBounds* out[2] = {left, right};
     for (int i = 0; i < 2; ++i) {
@@ -92,7 +83,7 @@ void split(const RTCBuildPrimitive* primitive, unsigned axis, float position, RT
 }
 
 // Triangles worth a test, in the order of their indices, among stored ones [first, first + count), which get ids from first_id on.
-// Of a shared mesh, needles without area stay: rounding gives them one in the world, now and then.
+// Of a shared mesh, needles without area stay: rounding gives them one in the world, now and then. So does all that moves.
 void append_hittable(const WorldTriangles& world, uint first, uint count, uint first_id, bool shared, uint32_t threads,
                      std::vector<BvhTriangle>& kept) {
     size_t n = kept.size();
@@ -105,8 +96,8 @@ void append_hittable(const WorldTriangles& world, uint first, uint count, uint f
             const auto [p0, p1, p2] = world.stored(first + uint(i));
             const glm::dvec3 area = cross(glm::dvec3(p1) - glm::dvec3(p0), glm::dvec3(p2) - glm::dvec3(p0));
             const Opacity::Kind kind = world.opacity.kind(first + uint(i));
-            keep[i] = kind != Opacity::Kind::nowhere && finite(p0) && finite(p1) && finite(p2) &&
-                      (shared ? p0 != p1 && p1 != p2 && p2 != p0 : area != glm::dvec3(0));
+            const bool somewhere = world.moves(first + uint(i)) || (shared ? p0 != p1 && p1 != p2 && p2 != p0 : area != glm::dvec3(0));
+            keep[i] = kind != Opacity::Kind::nowhere && finite(p0) && finite(p1) && finite(p2) && somewhere;
             kept[before + i] = {p0, p1, p2, (first_id + uint(i)) | (kind == Opacity::Kind::asks ? bvh_asks : 0)};
         }
     }, threads);
@@ -129,8 +120,10 @@ uint32_t hash(const Key& key) {
 }
 
 // Copies of a triangle that is everywhere can only tie with it; a heap of them in one place would be a tree that prunes nothing.
-// The first such stays, and what asks before it. Copies have one hash, so only what shares a hash is compared.
-void drop_copies(std::vector<BvhTriangle>& kept, uint32_t threads) {
+// The first such stays, and what asks before it. Copies have one hash, so only what shares a hash is compared. What moves(id)
+// is a copy of nothing: another moment may tell them apart.
+template <class Moves>
+void drop_copies(std::vector<BvhTriangle>& kept, Moves moves, uint32_t threads) {
     std::vector<uint64_t> hashed(kept.size());
     engine::parallel_pieces(hashed.size(), grain, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) hashed[i] = uint64_t(hash(key(kept[i]))) << 32 | i;
@@ -147,45 +140,16 @@ void drop_copies(std::vector<BvhTriangle>& kept, uint32_t threads) {
         bool everywhere = false;  // one of those before
         for (size_t i = 0; i < alike.size(); ++i) {
             if (i > 0 && alike[i].first != alike[i - 1].first) everywhere = false;
+            const uint id = kept[alike[i].second].id;
+            if (moves(id & ~bvh_asks)) continue;
             copy[alike[i].second] = everywhere;
-            everywhere = everywhere || (kept[alike[i].second].id & bvh_asks) == 0;
+            everywhere = everywhere || (id & bvh_asks) == 0;
         }
     }
     size_t n = 0;
     for (size_t i = 0; i < kept.size(); ++i)
         if (!copy[i]) kept[n++] = kept[i];
     kept.resize(n);
-}
-
-// Rounds the boxes of a node's children to its frame, outward.
-void quantise(const Built& from, BvhNode& to) {
-    BvhBox all = from.box[0];
-    for (uint i = 1; i < from.count; ++i) all = {min(all.lo, from.box[i].lo), max(all.hi, from.box[i].hi)};
-    to.origin = all.lo;
-    to.frame = from.count << 24;
-    for (int axis = 0; axis < 3; ++axis) {
-        int exponent = 0;
-        std::frexp((all.hi[axis] - all.lo[axis]) / 255, &exponent);  // 2^exponent > extent / 255
-        for (uint e = uint(clamp(exponent + 127, 1, 254));; ++e) {
-            const float scale = uintBitsToFloat(e << 23), origin = all.lo[axis];
-            auto bound = [&](int byte) { return origin + float(byte) * scale; };
-            bool fits = true;
-            uint bytes[bvh_width][2];
-            for (uint i = 0; i < from.count; ++i) {
-                int lo = clamp(int((from.box[i].lo[axis] - origin) / scale), 0, 255), hi = lo;
-                while (lo > 0 && bound(lo) > from.box[i].lo[axis]) --lo;
-                hi = clamp(int((from.box[i].hi[axis] - origin) / scale), lo, 255);
-                while (hi < 255 && bound(hi) < from.box[i].hi[axis]) ++hi;
-                fits = fits && bound(hi) >= from.box[i].hi[axis];
-                bytes[i][0] = uint(lo), bytes[i][1] = uint(hi);
-            }
-            if (!fits) continue;
-            to.frame |= e << (8 * axis);
-            for (uint i = 0; i < from.count; ++i)
-                for (int end = 0; end < 2; ++end) to.child[i][end] |= bytes[i][end] << (8 * axis);
-            break;
-        }
-    }
 }
 
 struct Layout {
@@ -207,8 +171,9 @@ struct Layout {
         Built sorted = node;
         for (uint i = 0; i < node.count; ++i) sorted.child[i] = node.child[order[i]], sorted.box[i] = node.box[order[i]];
 
-        BvhNode packed{};
-        quantise(sorted, packed);
+        BvhChildren children;
+        std::copy_n(sorted.box, sorted.count, children.box);
+        BvhNode packed = bvh_pack({}, children, sorted.count);
         packed.first_child = uint(out.nodes.size());
         packed.first_triangle = uint(out.triangles.size());
         uint inner = 0;
@@ -230,8 +195,6 @@ struct Layout {
 
     uint deepest = 0;
 };
-
-BvhBox united(const BvhBox& a, const BvhBox& b) { return {min(a.lo, b.lo), max(a.hi, b.hi)}; }
 
 // Lays the tree that Embree makes of these boxes from node `index` on. Returns its levels.
 uint lay_tree(Layout layout, std::span<const BvhBox> boxes, uint index, BvhQuality quality, uint max_depth, uint32_t threads) {
@@ -268,7 +231,7 @@ uint lay_tree(Layout layout, std::span<const BvhBox> boxes, uint index, BvhQuali
         above.count = 1;
         above.child[0] = root;
         above.box[0] = boxes[root->triangle[0]];
-        for (uint i = 1; i < root->count; ++i) above.box[0] = united(above.box[0], boxes[root->triangle[i]]);
+        for (uint i = 1; i < root->count; ++i) above.box[0] = bvh_united(above.box[0], boxes[root->triangle[i]]);
         root = &above;
     }
     layout.lay(*root, index, 1);
@@ -323,11 +286,9 @@ BvhBox instance_box(std::span<const BvhTriangle> triangles, const Instance& i) {
     BvhBox box{vec3(INFINITY), vec3(-INFINITY)};
     for (const BvhTriangle& t : triangles) {
         const Corners c = instance_corners(i, {t.p0, t.p1, t.p2});
-        box = united(box, {min(c.p0, min(c.p1, c.p2)), max(c.p0, max(c.p1, c.p2))});
+        box = bvh_united(box, {min(c.p0, min(c.p1, c.p2)), max(c.p0, max(c.p1, c.p2))});
     }
-    const vec3 extent = box.hi - box.lo;
-    const vec3 pad = (vec3(max(extent.x, max(extent.y, extent.z))) + max(abs(box.lo), abs(box.hi))) * 4.7683716e-7f;
-    return {box.lo - pad, box.hi + pad};
+    return bvh_padded(box.lo, box.hi);
 }
 
 // Trees of meshes, and one over instances. Everything that is stored in world space is one mesh.
@@ -356,13 +317,13 @@ BvhData build_levels(const WorldTriangles& world, BvhQuality quality, uint32_t t
         if (is_new) {
             triangles.clear();
             append_hittable(world, i.first_triangle, i.count, 0, true, threads, triangles);
-            drop_copies(triangles, threads);
+            drop_copies(triangles, [](uint) { return false; }, threads);
             out.dropped += i.count - uint(triangles.size());
             mesh->second = append_mesh(triangles, quality, threads, out);
         }
         use(mesh->second, i);
     }
-    drop_copies(in_world, threads);
+    drop_copies(in_world, [&](uint id) { return world.moves() && world.moves(world.place(id).triangle); }, threads);
     out.dropped -= uint(in_world.size());
     Instance all{};
     all.flags = instance_in_world;
@@ -383,7 +344,7 @@ BvhData build_tree(const WorldTriangles& world, BvhQuality quality, uint32_t thr
     BvhData out;
     std::vector<BvhTriangle> triangles;
     append_hittable(world, 0, world.count(), 0, false, threads, triangles);
-    drop_copies(triangles, threads);
+    drop_copies(triangles, [&](uint id) { return world.moves(id); }, threads);
     out.dropped = uint(world.triangles.size() - triangles.size());
     out.nodes.push_back({});
     out.triangles.reserve(triangles.size());
@@ -393,10 +354,7 @@ BvhData build_tree(const WorldTriangles& world, BvhQuality quality, uint32_t thr
 
 }  // namespace
 
-BvhBox bvh_box(const BvhTriangle& t) {
-    const vec3 lo = min(t.p0, min(t.p1, t.p2)), hi = max(t.p0, max(t.p1, t.p2)), pad = padding(t);
-    return {lo - pad, hi + pad};
-}
+BvhBox bvh_box(const BvhTriangle& t) { return bvh_box_of(t.p0, t.p1, t.p2); }
 
 BvhData build_bvh(const WorldTriangles& world, BvhQuality quality, uint32_t threads) {
     assert(world.count() <= bvh_asks);

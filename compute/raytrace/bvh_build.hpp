@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "compute/instances/world.hpp"
-#include "compute/raytrace/raytrace_io.h"
+#include "compute/raytrace/bvh_pack.h"
 
 namespace myriad::compute {
 
@@ -39,10 +39,15 @@ struct BvhParts {
 // The same input gives the same bytes, whatever the number of threads (0: all there are). Fewer than 2^31 triangles.
 BvhData build_bvh(const WorldTriangles& world, BvhQuality quality = BvhQuality::quick, uint32_t threads = 0);
 
-// The bounds that a triangle is boxed by; see bvh_build.cpp for what they are enlarged by.
-struct BvhBox {
-    vec3 lo, hi;
-};
 BvhBox bvh_box(const BvhTriangle& triangle);
+
+// What of a tree follows triangles that move (WorldTriangles::first_moving).
+struct BvhMoving {
+    std::vector<uvec2> triangles;         // their indices in the tree, and as stored
+    std::vector<uint> nodes;              // above them, lowest level first
+    std::vector<uint> level_ends;         // in `nodes`
+    std::vector<BvhBox> boxes;            // by node: around its triangles; of instances that stand still, around what it is to the node above
+};
+BvhMoving bvh_moving(const WorldTriangles& world, const BvhParts& tree);
 
 }  // namespace myriad::compute

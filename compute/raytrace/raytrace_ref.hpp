@@ -2,10 +2,11 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "compute/instances/world.hpp"
-#include "compute/raytrace/raytrace_io.h"
+#include "compute/raytrace/bvh_build.hpp"
 
 namespace myriad::compute {
 
@@ -23,5 +24,12 @@ struct ExactHit {
     double u, v, margin;
 };
 ExactHit closest_exact(std::span<const glm::vec3> positions, std::span<const glm::uvec4> triangles, const Ray& ray);
+
+// The tree after its triangles have moved to `positions`, as Bvh::refit leaves it: all nodes anew, from the root down.
+BvhData refit_ref(BvhData tree, const WorldTriangles& world, std::span<const glm::vec3> positions);
+
+// The first violated invariant of a tree, or nothing: each of its triangles in one leaf, strictly within the box of each ancestor, each node
+// in one place, no more levels than it says. Meshes that instances share are looked at in their own space.
+std::string bvh_check(const BvhData& tree);
 
 }  // namespace myriad::compute

@@ -97,6 +97,7 @@ double srgb_to_linear(uint8_t code) {
 
 compute::WorldTriangles world_triangles(const scenes::Triangles& triangles) {
     compute::WorldTriangles world{triangles.positions, triangles.triangles};
+    if (triangles.motion.count() > 0) world.first_moving = triangles.motion.first_triangle;
     world.instances.reserve(triangles.placements.size());
     for (const scenes::Placement& p : triangles.placements) {
         const bool mirrored = glm::determinant(glm::dmat3(p.to_world)) < 0;

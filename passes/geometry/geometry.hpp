@@ -39,6 +39,8 @@ public:
     compute::OpacityReader opacity() const;
 
     const engine::Array<vec3>& positions() const { return positions_; }
+    const engine::Array<vec3>& normals() const { return normals_; }
+    const engine::Array<vec4>& tangents() const { return tangents_; }  // empty where no material bends normals
     const engine::Array<uvec4>& triangles() const { return triangles_; }
     const engine::Array<Instance>* instances() const { return instances_.count() ? &instances_ : nullptr; }  // null: nothing is shared
 

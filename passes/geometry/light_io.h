@@ -23,6 +23,24 @@ struct Light {
 };
 MYRIAD_ARRAY(Lights, Light, 16)
 
+// An emissive triangle that moves.
+struct Emitter {
+    uint light;          // in the table
+    uint triangle;       // as stored
+    float sides;         // that shine
+};
+MYRIAD_ARRAY(Emitters, Emitter, 4)
+MYRIAD_ARRAY(EmitterPositions, vec3, 4)
+
+// "geometry/emitters"
+struct EmittersPush {
+    Emitters emitters;
+    Uint4s triangles;
+    EmitterPositions positions;
+    Lights lights;
+    uint count;
+};
+
 // The falloff goes from 0 at cos_outer to 1 at cos_outer + spot_width.
 MYRIAD_FN float spot_width(Light light) { return light.extent.x; }
 

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "engine/transfer.hpp"
+#include "passes/kernels.hpp"
 
 namespace myriad::passes {
 namespace {
@@ -125,14 +126,20 @@ LightData light_data(const scenes::Scene& scene, const scenes::Triangles& triang
         const uint32_t material = triangles.triangles[stored].w;
         if (!radiometer.shines(material)) return;
         const dvec3 radiance = radiometer.mean(i);
-        const double area = (scene.materials[material].double_sided ? 2 : 1) * area_of(corners);
+        const int sides = scene.materials[material].double_sided ? 2 : 1;
+        const double area = sides * area_of(corners);
         const double power = mean(radiance) * std::numbers::pi * area;
-        if (!(power > 0)) return;
+        const bool moves = geometry.world.moves(stored) && mean(radiance) > 0;
+        if (!(power > 0) && !moves) return;
+        if (moves) data.moving.push_back({uint(data.lights.size()), stored, float(sides)});
         data.lights.push_back({.position = vec3(0), .type = light_triangle, .direction = vec3(0), .cdf = 0, .intensity = vec3(radiance),
                                .triangle = uint(i), .extent = vec3(float(area), 0, 0), .cos_outer = 0});
         data.powers.push_back(power);
     });
     for (double power : data.powers) data.power += power;
+    // What moves has a share even where it has no area yet: a hundredth of the mean.
+    const double least = 0.01 * data.power / double(std::max<size_t>(data.lights.size(), 1));
+    for (const Emitter& e : data.moving) data.powers[e.light] = std::max(data.powers[e.light], least);
     share_out(data.lights, data.powers);
     return data;
 }
@@ -166,20 +173,35 @@ LightTable::LightTable(engine::Device& device, const scenes::Scene& scene, const
     : LightTable(device, light_data(scene, triangles, geometry)) {}
 
 LightTable::LightTable(engine::Device& device, LightData data)
-    : device_(device), data_(std::move(data)), lights_(engine::upload(device, "scene", "lights", data_.lights)) {}
+    : device_(device), data_(std::move(data)), lights_(engine::upload(device, "scene", "lights", data_.lights)),
+      moving_(engine::upload(device, "scene", "lights that move", data_.moving)) {
+    if (!data_.moving.empty()) emitters_.emplace(device, engine::passes_kernels, "geometry/emitters");
+}
 
 void LightTable::move(std::span<const scenes::Light> lights) {
     assert(lights.size() == punctual());
     std::vector<Light> now;
     for (size_t i = 0; i < lights.size(); ++i) {
-        assert(uint(lights[i].type) == data_.lights[i].type);
-        now.push_back(punctual_light(lights[i], data_.lights[i].position, data_.lights[i].extent));
-        data_.powers[i] = power_of(now[i]);
+        const Light& before = data_.lights[i];
+        assert(uint(lights[i].type) == before.type);
+        now.push_back(punctual_light(lights[i], before.position, before.extent));
+        now.back().cdf = before.cdf;
     }
+    if (now.empty() || std::memcmp(now.data(), data_.lights.data(), now.size() * sizeof(Light)) == 0) return;
+    for (size_t i = 0; i < now.size(); ++i) data_.powers[i] = power_of(now[i]);
     data_.power = std::accumulate(data_.powers.begin(), data_.powers.end(), 0.0);
     move_lights(data_.lights, now, data_.powers);
     engine::upload_bytes(device_, data_.lights.data(), lights_, lights_.bytes());
     ++moves_;
+}
+
+void LightTable::follow(engine::Recorder& recorder, const Geometry& geometry) {
+    if (!emitters_) return;
+    recorder.dispatch(*emitters_,
+                      EmittersPush{.emitters = recorder.read(moving_), .triangles = recorder.read(geometry.triangles()),
+                                   .positions = recorder.read(geometry.positions()), .lights = recorder.write(lights_),
+                                   .count = uint(moving_.count())},
+                      moving_.count());
 }
 
 }  // namespace myriad::passes

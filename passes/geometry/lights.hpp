@@ -1,6 +1,7 @@
 // The light table: punctual lights, then emissive triangles, with shares of power for sampling; see README.md.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "engine/recorder.hpp"
@@ -15,6 +16,7 @@ struct LightData {
     std::vector<double> powers;  // W, mean of R, G, B, a light: what `cdf` shares out
     uint32_t punctual = 0;       // the first so many; the rest are emissive triangles
     double power = 0;            // of all
+    std::vector<Emitter> moving; // the emissive triangles that do; all of them, for one without area may get some
 };
 // `geometry`: what geometry_data makes of the same.
 LightData light_data(const scenes::Scene& scene, const scenes::Triangles& triangles, const GeometryData& geometry);
@@ -30,12 +32,18 @@ class LightTable {
 public:
     LightTable(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles, const GeometryData& geometry);
 
-    // The scene's punctual lights have moved: they are as many, of the same kinds, in the same order. Between submissions.
+    // The scene's punctual lights have moved: they are as many, of the same kinds, in the same order. Between submissions. Does
+    // nothing where they stand as they stood.
     void move(std::span<const scenes::Light> lights);
     uint32_t moves() const { return moves_; }  // how often that was, for who holds a copy
 
+    // Emissive triangles have moved, after what else has: they shine by the area that they have now, with the share of paths that
+    // they had. Records nothing where none moves.
+    void follow(engine::Recorder& recorder, const Geometry& geometry);
+
     Ref<Light> read(engine::Recorder& recorder) const { return recorder.read(lights_); }
 
+    const engine::Array<Light>& array() const { return lights_; }
     uint32_t count() const { return uint32_t(lights_.count()); }
     uint32_t punctual() const { return data_.punctual; }
     bool has_punctual() const { return punctual() > 0; }
@@ -49,6 +57,8 @@ private:
     engine::Device& device_;
     LightData data_;
     engine::Array<Light> lights_;
+    engine::Array<Emitter> moving_;
+    std::optional<engine::Program> emitters_;  // where some move
     uint32_t moves_ = 0;
 };
 

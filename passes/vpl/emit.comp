@@ -8,13 +8,15 @@ layout(push_constant, scalar) uniform Push { VplEmitPush push; };
 
 layout(constant_id = 2) const bool guided = false;
 
+float share_end(uint light) { return guided ? push.shares.at[light] : push.lights.at[light].cdf; }
+
 // The first light whose share ends beyond `selection`. A light without power has none.
 uint light_for(float selection) {
     uint low = 0u;
     uint high = push.light_count - 1u;
     while (low < high) {
         const uint middle = (low + high) / 2u;
-        if (push.lights.at[middle].cdf > selection) high = middle;
+        if (share_end(middle) > selection) high = middle;
         else low = middle + 1u;
     }
     return low;
@@ -47,9 +49,9 @@ void main() {
     const float selection = path_selection(path, push.on.paths, push.on.seed);
     const uint chosen = light_for(selection);
     const Light light = push.lights.at[chosen];
-    const float before = chosen > 0u ? push.lights.at[chosen - 1u].cdf : 0.0;
+    const float before = chosen > 0u ? share_end(chosen - 1u) : 0.0;
     // The share as stored, rounded: it is what the choice is really made by.
-    const float share = light.cdf - before;
+    const float share = share_end(chosen) - before;
     const vec4 x = path_emission_point(path_index(path, push.on.path_bits), push.on.seed);
     const float to_path = 1.0 / (share * float(push.on.paths));
 

@@ -39,10 +39,16 @@ std::vector<PilotTally> run_pilot(engine::Recorder& recorder, const Geometry& ge
     return engine::download(device, tallies);
 }
 
-std::vector<double> shares(const LightData& lights, const GuideData& guide) {
-    std::vector<double> shares = lights.powers;
-    for (size_t i = 0; i < shares.size(); ++i) shares[i] *= guide.worth[i];
+std::vector<float> shares_of(const std::vector<Light>& lights) {
+    std::vector<float> shares;
+    for (const Light& light : lights) shares.push_back(light.cdf);
     return shares;
+}
+
+std::vector<double> weights(const LightData& lights, const GuideData& guide) {
+    std::vector<double> weights = lights.powers;
+    for (size_t i = 0; i < weights.size(); ++i) weights[i] *= guide.worth[i];
+    return weights;
 }
 
 }  // namespace
@@ -64,21 +70,21 @@ GuideData guide_data(const LightData& lights, std::span<const PilotTally> tallie
         append_ends(guide.cells, columns);
         for (uint32_t c = 0; c < guide_side; ++c) append_ends(guide.cells, std::span(cells).subspan(c * guide_side, guide_side));
     }
-    share_out(guide.lights, shares(lights, guide));
+    share_out(guide.lights, weights(lights, guide));
     return guide;
 }
 
 EmissionGuide::EmissionGuide(engine::Recorder& recorder, const Geometry& geometry, const compute::Bvh& bvh, const LightTable& lights,
                              uint32_t seed, const engine::Constants& variant)
     : device_(recorder.device()), data_(guide_data(lights.data(), run_pilot(recorder, geometry, bvh, lights, seed, variant), samples_a_cell(lights.punctual()))),
-      moves_(lights.moves()), lights_(engine::upload(recorder.device(), "vpls", "guided lights", data_.lights)),
+      moves_(lights.moves()), shares_(engine::upload(recorder.device(), "vpls", "guided shares", shares_of(data_.lights))),
       cells_(engine::upload(recorder.device(), "vpls", "guide", data_.cells)) {}
 
 void EmissionGuide::follow(const LightTable& lights) {
     if (lights.moves() == moves_) return;
     moves_ = lights.moves();
-    move_lights(data_.lights, std::span(lights.data().lights).first(lights.punctual()), shares(lights.data(), data_));
-    engine::upload_bytes(device_, data_.lights.data(), lights_, lights_.bytes());
+    move_lights(data_.lights, std::span(lights.data().lights).first(lights.punctual()), weights(lights.data(), data_));
+    engine::upload_bytes(device_, shares_of(data_.lights).data(), shares_, shares_.bytes());
 }
 
 }  // namespace myriad::passes

@@ -15,7 +15,7 @@ namespace myriad::passes {
 inline constexpr double guide_floor = 0.05;
 
 struct GuideData {
-    std::vector<Light> lights;  // as in the table, but for `cdf`, which is the guided choice
+    std::vector<Light> lights;  // as in the table, but for `cdf`, which is the guided choice; only that goes to the device
     std::vector<float> cells;   // guide_floats a punctual light
     std::vector<double> worth;  // a light: what its power was multiplied by, the mean of its cells
 };
@@ -28,10 +28,11 @@ public:
     EmissionGuide(engine::Recorder& recorder, const Geometry& geometry, const compute::Bvh& bvh, const LightTable& lights, uint32_t seed,
                   const engine::Constants& variant = {});
 
-    // Moves lights as the table's have moved. They are guided as before: what the pilot found is a little out of date, but the pattern stays.
+    // Lights of the table have moved. They are guided as before: what the pilot found is a little out of date, but the pattern stays.
     void follow(const LightTable& lights);
 
-    Ref<Light> lights(engine::Recorder& recorder) const { return recorder.read(lights_); }
+    // By light: its share and those of all before it.
+    Ref<float> shares(engine::Recorder& recorder) const { return recorder.read(shares_); }
     Ref<float> cells(engine::Recorder& recorder) const { return recorder.read(cells_); }
     const GuideData& data() const { return data_; }
 
@@ -39,8 +40,7 @@ private:
     engine::Device& device_;
     GuideData data_;
     uint32_t moves_;  // of the table, that it has followed
-    engine::Array<Light> lights_;
-    engine::Array<float> cells_;
+    engine::Array<float> shares_, cells_;
 };
 
 }  // namespace myriad::passes

@@ -113,7 +113,7 @@ void VplPass::record_paths(engine::Recorder& recorder, const Geometry& geometry,
     };
     recorder.fill(alive_, 0);
     recorder.dispatch(guide_ ? emit_guided_ : emit_,
-                      VplEmitPush{.on = on_layer(first_hits), .lights = guide_ ? guide_->lights(recorder) : lights.read(recorder),
+                      VplEmitPush{.on = on_layer(first_hits), .lights = lights.read(recorder), .shares = guide_ ? guide_->shares(recorder) : Floats{},
                                   .cells = guide_ ? guide_->cells(recorder) : Floats{}, .light_count = lights.count(), .layers = layers},
                       paths);
     for (uint32_t layer = 1; layer < layers; ++layer) recorder.dispatch(bounce_, VplBouncePush{.on = on_layer(layer)}, paths);

@@ -61,8 +61,9 @@ struct VplPilotPush {
 // light, which has no surface, at the first surface that it hits, in `layer` if there is such a layer.
 struct VplEmitPush {
     VplPaths on;
-    Lights lights;       // `cdf` is what they are chosen by
-    Floats cells;        // guide_floats a punctual light, where specialisation constant 2 says so
+    Lights lights;       // chosen by `cdf`, or where specialisation constant 2 says so, by the guide's
+    Floats shares;       // the guide's `cdf`, by light
+    Floats cells;        // the guide's: guide_floats a punctual light
     uint light_count;
     uint layers;
 };
