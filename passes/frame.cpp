@@ -130,7 +130,9 @@ void Frame::move_to(const scenes::Moment& moment) {
         bvh_.refit(recorder_, geometry_.positions(), geometry_.triangles());
     }
     if (maps_) maps_->place(recorder_, map_scene());
-    if (tree_) refit_tree();
+    if (!tree_) return;
+    auto scope = recorder_.scope("refit");
+    tree_->refit_moving(recorder_, geometry_.positions(), geometry_.triangles(), geometry_.instances(), geometry_.opacity());
 }
 
 void Frame::report(const std::string& stage, double done) const {

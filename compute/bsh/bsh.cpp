@@ -1,5 +1,6 @@
 #include "compute/bsh/bsh.hpp"
 
+#include <algorithm>
 #include <bit>
 
 #include "compute/bsh/bsh_order.hpp"
@@ -18,6 +19,28 @@ engine::Constants leaf_constants(const WorldTriangles& world) {
     engine::Constants constants = world.constants();
     constants[2] = world.opacity.blends();
     return constants;
+}
+
+// Blocks with a sample below that moves.
+struct MovingBlocks {
+    std::vector<uint> blocks, ends;
+};
+MovingBlocks moving_blocks_of(std::span<const uint8_t> leaf_moves, std::span<const BshLevel> levels) {
+    MovingBlocks found;
+    for (uint level = 0; level < levels.size(); ++level) {
+        const size_t first = found.blocks.size(), below = level > 1 ? found.ends[level - 2] : 0;
+        const auto add = [&](uint block) {
+            if (found.blocks.size() == first || found.blocks.back() != block) found.blocks.push_back(block);
+        };
+        if (level == 0) {
+            for (uint leaf = 0; leaf < leaf_moves.size(); ++leaf)
+                if (leaf_moves[leaf]) add(leaf / 8);
+        } else {
+            for (size_t i = below; i < first; ++i) add(found.blocks[i] / 8);
+        }
+        found.ends.push_back(uint(found.blocks.size()));
+    }
+    return found;
 }
 
 }  // namespace
@@ -52,7 +75,8 @@ BshLeaves bsh_leaves(const WorldTriangles& world, uint32_t log2_samples, uint32_
 }
 
 Bsh::Bsh(engine::Device& device, const WorldTriangles& world, std::span<const SurfaceSample> leaves, double area, float radius)
-    : leaves_(device, compute_kernels, "bsh/leaves", leaf_constants(world)), inner_(device, compute_kernels, "bsh/inner"),
+    : device_(device), leaves_(device, compute_kernels, "bsh/leaves", leaf_constants(world)), inner_(device, compute_kernels, "bsh/inner"),
+      quality_(device, compute_kernels, "bsh/quality"),
       shared_(world.shared()), blends_(world.opacity.blends()) {
     if (leaves.empty()) return;
     assert(std::has_single_bit(leaves.size()) && leaves.size() <= uint64_t(1) << 28 && "slots are 32-bit");
@@ -68,14 +92,35 @@ Bsh::Bsh(engine::Device& device, const WorldTriangles& world, std::span<const Su
     cones_ = {device, "scene", "BSH cones", slots()};
     boxes_ = {device, "scene", "BSH boxes", slots()};
     merged_boxes_ = {device, "scene", "BSH merged boxes", 2 * uint64_t(blocks())};
+    if (!world.moves()) return;
+    for (const SurfaceSample& s : leaves) leaf_moves_.push_back(world.moves(world.place(s.triangle).triangle));
+    find_moving();
+}
+
+void Bsh::find_moving() {
+    const MovingBlocks moving = moving_blocks_of(leaf_moves_, levels_);
+    moving_ = {};
+    moving_ = engine::upload(device_, "scene", "BSH blocks that move", moving.blocks);
+    moving_ends_ = moving.ends;
 }
 
 void Bsh::refit(engine::Recorder& recorder, const engine::Array<vec3>& positions, const engine::Array<uvec4>& triangles,
                 const engine::Array<Instance>* instances, const OpacityReader& opacity) {
+    record(recorder, positions, triangles, instances, opacity, false);
+}
+
+void Bsh::refit_moving(engine::Recorder& recorder, const engine::Array<vec3>& positions, const engine::Array<uvec4>& triangles,
+                       const engine::Array<Instance>* instances, const OpacityReader& opacity) {
+    if (moving_.count() > 0) record(recorder, positions, triangles, instances, opacity, true);
+}
+
+void Bsh::record(engine::Recorder& recorder, const engine::Array<vec3>& positions, const engine::Array<uvec4>& triangles,
+                 const engine::Array<Instance>* instances, const OpacityReader& opacity, bool moving) {
     assert((!shared_ || instances) && (!blends_ || opacity));
     ++bounds_version_;
     for (size_t i = 0; i < levels_.size(); ++i) {
         const BshLevel& level = levels_[i];
+        const uint first = moving && i > 0 ? moving_ends_[i - 1] : 0, listed = moving ? moving_ends_[i] - first : 0;
         recorder.dispatch(i == 0 ? leaves_ : inner_,
                           BshLevelPush{.frames = recorder.write(frames_),
                                        .spheres = recorder.write(spheres_),
@@ -88,15 +133,54 @@ void Bsh::refit(engine::Recorder& recorder, const engine::Array<vec3>& positions
                                        .positions = recorder.read(positions),
                                        .instances = shared_ ? recorder.read(*instances) : Instances{},
                                        .opacity = blends_ && i == 0 ? opacity(recorder) : OpacityRef{},
+                                       .listed = moving ? recorder.read(moving_, first) : Uints{},
                                        .leaf_radius = sample_radius_,
                                        .leaf_share = sample_share(),
                                        .nodes = level.nodes,
                                        .first_slot = level.first_slot,
                                        .first_child_block = i == 0 ? 0 : levels_[i - 1].first_block(),
                                        .first_owner = i + 1 < levels_.size() ? levels_[i + 1].first_slot : 0,
-                                       .instance_count = shared_ ? uint(instances->count()) : 0},
-                          level.blocks());
+                                       .instance_count = shared_ ? uint(instances->count()) : 0,
+                                       .listed_count = listed},
+                          moving ? listed : level.blocks());
     }
+}
+
+void Bsh::measure(engine::Recorder& recorder) {
+    if (sums_.count() == 0) sums_ = {device_, "scene", "BSH quality", bsh_quality_sums};
+    recorder.dispatch(quality_,
+                      BshQualityPush{.merged = recorder.read(merged_), .spheres = recorder.read(spheres_), .sums = recorder.write(sums_),
+                                     .blocks = blocks()},
+                      bsh_quality_sums);
+}
+
+BshQuality Bsh::quality() const {
+    BshQuality quality;
+    for (const vec2& sum : engine::download(device_, sums_)) quality.overlap += double(sum.x), quality.extent += double(sum.y);
+    quality.overlap /= std::max(blocks(), 1u);
+    return quality;
+}
+
+void Bsh::rebuild(engine::Recorder& recorder, const engine::Array<vec3>& positions, const engine::Array<uvec4>& triangles,
+                  const engine::Array<Instance>* instances, const OpacityReader& opacity) {
+    recorder.submit_and_wait();
+    const std::vector<vec4> frames = engine::download(device_, frames_, leaves() / 8 + 1);
+    const std::vector<uvec2> spheres = engine::download(device_, spheres_, leaves());
+    const std::vector<SurfaceSample> samples = engine::download(device_, samples_);
+    std::vector<vec3> points;
+    for (uint leaf = 0; leaf < leaves(); ++leaf) points.push_back(bsh_decode(frames[leaf / 8], spheres[leaf]).center);
+    const std::vector<uint32_t> order = bsh_order(points);
+    std::vector<SurfaceSample> sorted;
+    std::vector<uint8_t> moves;
+    for (const uint32_t from : order) {
+        sorted.push_back(samples[from]);
+        if (!leaf_moves_.empty()) moves.push_back(leaf_moves_[from]);
+    }
+    engine::upload_bytes(device_, sorted.data(), samples_, samples_.bytes());
+    leaf_moves_ = std::move(moves);
+    if (!leaf_moves_.empty()) find_moving();
+    ++rebuilds_;
+    refit(recorder, positions, triangles, instances, opacity);
 }
 
 BshRef Bsh::read(engine::Recorder& recorder) const {

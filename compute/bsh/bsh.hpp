@@ -28,6 +28,12 @@ struct BshLeaves {
 // Samples the surface at 2^log2_samples points and finds the topology. Deterministic.
 BshLeaves bsh_leaves(const WorldTriangles& world, uint32_t log2_samples, uint32_t seed);
 
+// How tightly a tree holds its leaves, to be compared with the same tree's when it was built.
+struct BshQuality {
+    double overlap = 0;  // the mean over inner nodes of their children's volumes over their own
+    double extent = 0;   // the sum of squares of inner nodes' radii, m^2: cuts open nodes in proportion to what they cover of a view
+};
+
 class Bsh {
 public:
     // Bounds come with refit. Without samples the hierarchy is empty(): it has no leaves and must not be read.
@@ -41,6 +47,21 @@ public:
     // `instances` may be null where triangles are not shared, `opacity` where nothing blends.
     void refit(engine::Recorder& recorder, const engine::Array<vec3>& positions, const engine::Array<uvec4>& triangles,
                const engine::Array<Instance>* instances = nullptr, const OpacityReader& opacity = {});
+
+    // The same for the blocks above samples that move (WorldTriangles::first_moving); the others must be there already, and stay. Records
+    // nothing where none moves.
+    void refit_moving(engine::Recorder& recorder, const engine::Array<vec3>& positions, const engine::Array<uvec4>& triangles,
+                      const engine::Array<Instance>* instances = nullptr, const OpacityReader& opacity = {});
+
+    // Measures the bounds that there are; quality() has the result after the submission.
+    void measure(engine::Recorder& recorder);
+    BshQuality quality() const;
+
+    // Sorts the samples into a new tree by where the bounds have them now, as they would be if it were built here, and computes all bounds.
+    // Submits what is recorded. Slots, hence cuts, of before mean nothing afterwards.
+    void rebuild(engine::Recorder& recorder, const engine::Array<vec3>& positions, const engine::Array<uvec4>& triangles,
+                 const engine::Array<Instance>* instances = nullptr, const OpacityReader& opacity = {});
+    uint rebuilds() const { return rebuilds_; }                                 // how often that was
 
     // For a kernel that walks the tree.
     BshRef read(engine::Recorder& recorder) const;
@@ -64,9 +85,17 @@ public:
     const engine::Array<uint>& cones() const { return cones_; }
     const engine::Array<uvec2>& boxes() const { return boxes_; }
     uint64_t bytes() const;
+    uint moving_blocks() const { return uint(moving_.count()); }                // that refit_moving visits
 
 private:
-    engine::Program leaves_, inner_;
+    void record(engine::Recorder& recorder, const engine::Array<vec3>& positions, const engine::Array<uvec4>& triangles,
+                const engine::Array<Instance>* instances, const OpacityReader& opacity, bool moving);
+
+    void find_moving();
+
+    engine::Device& device_;
+    engine::Program leaves_, inner_, quality_;
+    uint rebuilds_ = 0;
     uint depth_ = 0;
     uint64_t bounds_version_ = 0;
     bool shared_, blends_;
@@ -77,6 +106,10 @@ private:
     engine::Array<vec4> frames_, merged_, merged_boxes_;
     engine::Array<uvec2> spheres_, boxes_;
     engine::Array<uint> cones_;
+    engine::Array<vec2> sums_;                 // of measure
+    std::vector<uint8_t> leaf_moves_;          // by leaf, where any does
+    engine::Array<uint> moving_;               // blocks, level after level, each level's counted from its first
+    std::vector<uint> moving_ends_;            // in it, of the levels
 };
 
 }  // namespace myriad::compute

@@ -3,6 +3,13 @@
 #include "compute/bsh/bsh_build.h"
 layout(push_constant, scalar) uniform Push { BshLevelPush push; };
 
+// The block of this invocation, counted from the level's first; past the end where it has none.
+uint own_block() {
+    const uint i = thread_index();
+    if (push.listed_count == 0u) return i;
+    return i < push.listed_count ? push.listed.at[i] : push.nodes;
+}
+
 // Of a block that has fewer than eight children, the last is repeated: it changes no bound.
 uint child_of(uint block, uint i) { return min(8u * block + i, push.nodes - 1u); }
 

@@ -25,7 +25,8 @@ struct BshBoxes {
     uint missing[8];  // of each, as bsh_missing
 };
 
-// "bsh/leaves" and "bsh/inner": one invocation a block of the level whose nodes are slots [first_slot, first_slot + nodes).
+// "bsh/leaves" and "bsh/inner": one invocation a block of the level whose nodes are slots [first_slot, first_slot + nodes), or one a
+// block that is listed.
 struct BshLevelPush {
     Float4s frames;            // by block
     Uint2s spheres;            // by slot
@@ -38,12 +39,24 @@ struct BshLevelPush {
     BshPositions positions;
     Instances instances;       // where triangles are shared
     OpacityRef opacity;        // where some blend
+    Uints listed;              // blocks, counted from the level's first
     float leaf_radius;         // of the sphere around a sample
     float leaf_share;          // area of the surface over the number of samples
     uint nodes, first_slot;
     uint first_child_block;    // inner only: the block that the level's first node owns
     uint first_owner;          // slot of the node that owns the level's first block; 0: nobody owns it, it holds the root
     uint instance_count;       // leaves only
+    uint listed_count;         // 0: all blocks of the level
+};
+
+// "bsh/quality"
+const uint bsh_quality_sums = 4096u;
+MYRIAD_ARRAY(BshSums, vec2, 8)
+struct BshQualityPush {
+    Float4s merged;            // by block
+    Uint2s spheres;            // by slot
+    BshSums sums;              // bsh_quality_sums, over inner nodes: children's volumes over the node's own; the square of its radius
+    uint blocks;
 };
 
 // At least |s.center - c| + s.radius; the radius itself where the centres coincide.

@@ -4,7 +4,7 @@
 #include "compute/bsh/bsh_block.glsl"
 
 void main() {
-    const uint block = thread_index();
+    const uint block = own_block();
     if (8u * block >= push.nodes) return;
     BshSpheres spheres;
     BshCones cones;

@@ -20,7 +20,7 @@ Corners corners_of(uint triangle) {
 }
 
 void main() {
-    const uint block = thread_index();
+    const uint block = own_block();
     if (8u * block >= push.nodes) return;
     BshSpheres spheres;
     BshCones cones;
