@@ -85,7 +85,9 @@ Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::T
     step("compiling kernels", [&] { recorder_.warm_up(); });
     if (vpl_) step("finding where light goes", [&] { prepare_paths(); });
     if (maps_) maps_->place(recorder_, map_scene());
-    if (tree_) refit_tree();
+    if (!tree_) return;
+    refit_tree();
+    if (deform_ && !tree_->empty()) tree_->measure(recorder_);
 }
 
 void Frame::make_indirect(compute::Derived& derived, const vec3& extent) {
@@ -120,6 +122,7 @@ void Frame::move_to(const scenes::Moment& moment) {
     lights_.move(moment.lights);
     if (!deform_ || !deform_->differs(moment)) return;
     moved_ = true;
+    if (tree_ && !tree_->empty() && tree_extent_ == 0) recorder_.submit_and_wait(), take_quality();  // of the tree as it was built
     {
         auto scope = recorder_.scope("deform");
         deform_->record(recorder_, geometry_, moment);
@@ -130,9 +133,28 @@ void Frame::move_to(const scenes::Moment& moment) {
         bvh_.refit(recorder_, geometry_.positions(), geometry_.triangles());
     }
     if (maps_) maps_->place(recorder_, map_scene());
-    if (!tree_) return;
-    auto scope = recorder_.scope("refit");
-    tree_->refit_moving(recorder_, geometry_.positions(), geometry_.triangles(), geometry_.instances(), geometry_.opacity());
+    if (tree_ && !tree_->empty()) follow_tree();
+}
+
+void Frame::follow_tree() {
+    if (tree_growth_ > double(settings_.rebuild)) {
+        auto scope = recorder_.scope("rebuild");
+        tree_->rebuild(recorder_, geometry_.positions(), geometry_.triangles(), geometry_.instances(), geometry_.opacity());
+        tree_extent_ = 0;
+    } else {
+        auto scope = recorder_.scope("refit");
+        tree_->refit_moving(recorder_, geometry_.positions(), geometry_.triangles(), geometry_.instances(), geometry_.opacity());
+    }
+    tree_->measure(recorder_);
+}
+
+// What was measured when the tree last changed; the first that is taken of a tree is what it grows from.
+void Frame::take_quality() {
+    const compute::BshQuality quality = tree_->quality();
+    if (tree_extent_ == 0) tree_extent_ = quality.extent;
+    tree_growth_ = tree_extent_ > 0 ? quality.extent / tree_extent_ : 1;
+    counters_.tree_growth = tree_growth_;
+    counters_.tree_overlap = quality.overlap;
 }
 
 void Frame::report(const std::string& stage, double done) const {
@@ -148,6 +170,7 @@ void Frame::render(const scenes::Camera& camera) {
         counters_.prepared = counters_.prepared.value_or(0) + 1;
         render_once(camera);
     }
+    if (deform_ && tree_ && !tree_->empty()) take_quality();
     moved_ = false;
     times_ = recorder_.take_times();
     report("done", 1);

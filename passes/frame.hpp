@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -42,6 +43,9 @@ struct FrameSettings {
     uint32_t log2_samples = 20;   // surface samples, leaves of the BSH
     float vpl_bound = 0;          // bound of the geometry term, 1/m^2; 0: pi * vpls / area (passes/gather)
     float bias = 0.5f;            // receiver bias, half diagonals of a texel
+    // The sphere tree is built anew, where samples stand by then, when its extent has grown by this factor since it was built: 0: whenever
+    // something has moved.
+    float rebuild = std::numeric_limits<float>::infinity();
     engine::Cache* cache = nullptr;  // of what is made of the triangles before the first frame; null: it is made anew
     // Called now and then with a stage and how much of it is done, 0 to 1.
     std::function<void(const std::string& stage, double done)> progress;
@@ -62,6 +66,8 @@ struct BuildStep {
 struct FrameCounters {
     std::optional<uint64_t> vpls;       // alive
     std::optional<uint64_t> prepared;   // times that light paths were prepared anew, since more VPLs lived than there is room for
+    // Where the scene moves, of the sphere tree (BshQuality): its extent against what it was when built, and its overlap.
+    std::optional<double> tree_growth, tree_overlap;
     std::optional<MapCounters> maps;    // visibility by maps
 };
 
@@ -105,6 +111,8 @@ private:
     MapScene map_scene() const { return {.tree = tree(), .geometry = &geometry_}; }
     void prepare_paths();
     void refit_tree();
+    void follow_tree();
+    void take_quality();
     void render_once(const scenes::Camera& camera);
     template <class Make>
     auto step(const char* name, Make make);  // reports it and times it
@@ -135,6 +143,7 @@ private:
     std::optional<TonemapPass> tonemap_;
     engine::Array<uint> exhausted_, host_words_;
     bool moved_ = false;
+    double tree_extent_ = 0, tree_growth_ = 1;  // when it was built, and since
     SceneSize size_;
     FrameCounters counters_;
     std::vector<engine::PassTime> times_;

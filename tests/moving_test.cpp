@@ -150,6 +150,31 @@ TEST_F(MovingTest, with_maps_it_is_nearly_so) {
     }
 }
 
+// A tree that has grown is built anew where that is asked for, in the frame after it was seen, and is as small as one made so.
+TEST_F(MovingTest, trees_are_measured_and_built_anew) {
+    scenes::Scene scene = room(false);
+    const scenes::Triangles triangles = scenes::flatten(scene, scenes::Sharing::automatic, {{0}});
+    for (const float rebuild : {std::numeric_limits<float>::infinity(), 1.0001f, 0.0f}) {
+        passes::FrameSettings s = settings(Visibility::manylods);
+        s.rebuild = rebuild;
+        passes::Frame frame(device, scene, triangles, s);
+        frame.move_to(scenes::moment_at(scene, triangles.motion, 0.9));
+        frame.render(scene.cameras[0]);
+        EXPECT_EQ(frame.tree()->rebuilds(), rebuild == 0 ? 1u : 0u);
+        EXPECT_TRUE(rebuild == 0 || *frame.counters().tree_growth > 1.0001) << *frame.counters().tree_growth;
+        const scenes::Moment moment = scenes::moment_at(scene, triangles.motion, 0.95);
+        frame.move_to(moment);
+        frame.render(scene.cameras[0]);
+        EXPECT_EQ(frame.tree()->rebuilds(), rebuild == 0 ? 2u : rebuild < 2 ? 1u : 0u);
+        EXPECT_GT(*frame.counters().tree_overlap, 0);
+        scenes::Triangles then = triangles;
+        scenes::deform(then, moment);
+        const compute::Bsh& tree = *frame.tree();
+        EXPECT_EQ(compute::bsh_check(compute::bsh_download(device, tree),
+                                     {engine::download(device, tree.samples()), then.positions, then.triangles, tree.sample_radius(), tree.sample_share()}), "");
+    }
+}
+
 // Lights alone: a scene that stands still has neither a deform pass nor a refit.
 TEST_F(MovingTest, lights_move_alone) {
     scenes::Scene scene = room(true);

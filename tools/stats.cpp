@@ -41,6 +41,8 @@ ordered_json counters_json(const FrameRun& frame) {
     ordered_json counters = ordered_json::object();
     if (frame.counters.vpls) counters["vpls"] = *frame.counters.vpls;
     if (frame.counters.prepared) counters["light_paths_prepared"] = *frame.counters.prepared;
+    if (frame.counters.tree_growth) counters["tree_growth"] = *frame.counters.tree_growth;
+    if (frame.counters.tree_overlap) counters["tree_overlap"] = *frame.counters.tree_overlap;
     if (const auto& maps = frame.counters.maps) {
         if (maps->list_capacity) {
             counters["node_views"] = maps->node_views;
