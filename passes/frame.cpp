@@ -141,6 +141,7 @@ void Frame::follow_tree() {
         auto scope = recorder_.scope("rebuild");
         tree_->rebuild(recorder_, geometry_.positions(), geometry_.triangles(), geometry_.instances(), geometry_.opacity());
         tree_extent_ = 0;
+        if (maps_) maps_->forget();
     } else {
         auto scope = recorder_.scope("refit");
         tree_->refit_moving(recorder_, geometry_.positions(), geometry_.triangles(), geometry_.instances(), geometry_.opacity());
