@@ -101,8 +101,7 @@ public:
             const std::string which = "frame " + std::to_string(run_.frames.size() + 1) + " of " + std::to_string(shots_.size());
             progress_.show(shots_.size() > 1 ? which + ": " + stage : stage, done);
         };
-        const bool still = loaded.triangles.motion.count() == 0;  // what is derived of triangles at one moment is no use at another
-        if (!options.cache.empty() && still) settings_.cache = &cache_.emplace(options.cache);
+        if (!options.cache.empty()) settings_.cache = &cache_.emplace(options.cache);
     }
 
     void make() {
@@ -116,28 +115,21 @@ public:
 private:
     // Sets the scene for the shot.
     scenes::Camera prepare(const Shot& shot) {
-        const bool moves = loaded_.triangles.motion.plays() && moment_ != shot.seconds;
-        if (moves) {
+        if (!frame_) build();
+        if (loaded_.triangles.motion.plays() && moment_ != shot.seconds) {
             const scenes::Moment moment = scenes::moment_at(loaded_.scene, loaded_.triangles.motion, *shot.seconds);
-            scenes::deform(loaded_.triangles, moment);
-            loaded_.scene.lights = moment.lights, loaded_.scene.cameras = moment.cameras;
+            frame_->move_to(moment);
+            loaded_.scene.cameras = moment.cameras;
             moment_ = shot.seconds;
         }
-        if (!frame_) first();
-        else if (moves) run_.phase("frame " + std::to_string(shot.number.value_or(0)) + ": build", [&] { build(); });
         if (loaded_.path) return loaded_.path->at(*shot.seconds);
         return loaded_.camera == scenes::none ? scenes::framing_camera(loaded_.triangles) : loaded_.scene.cameras[loaded_.camera];
     }
 
     void build() {
-        frame_.reset();  // before the next is made: two may not fit
-        run_.recorder_ms = run_.now_ms();  // the recorder is the first thing that a frame makes
-        frame_ = std::make_unique<passes::Frame>(device_, loaded_.scene, loaded_.triangles, settings_);
-    }
-
-    void first() {
         progress_.show("building", 0);
-        run_.phase("build", [&] { build(); });
+        run_.recorder_ms = run_.now_ms();  // the recorder is the first thing that a frame makes
+        run_.phase("build", [&] { frame_ = std::make_unique<passes::Frame>(device_, loaded_.scene, loaded_.triangles, settings_); });
         run_.build = frame_->build_steps();
         if (cache_) run_.cache = CacheUse{cache_->found(), cache_->missing(), cache_->damaged()};
         if (cache_ && !cache_->problem().empty()) progress_.clear(), say("warning", cache_->problem());
