@@ -36,6 +36,7 @@ nlohmann::json BenchRow::json(const engine::DeviceInfo& device) const {
 const std::vector<Bench>& benches() {
     static const std::vector<Bench> all = {
         {"manylods", "cut and splat of many VPL views: the device's lists and walks against native ones", bench_manylods},
+        {"manylods-table1", "maps of a moving light's VPLs: brute, ISM, basic, incremental and lazy cuts, with their errors", bench_table1},
     };
     return all;
 }
@@ -53,6 +54,7 @@ void print_row(const BenchRow& row) {
                 row.ms.median(), *std::min_element(row.ms.ms.begin(), row.ms.ms.end()), *std::max_element(row.ms.ms.begin(), row.ms.ms.end()));
     for (const auto& [name, samples] : row.stages) std::printf("  %s %.1f", name.c_str(), samples.median());
     for (const auto& [name, value] : row.counters) std::printf("  %s %.6g", name.c_str(), value);
+    for (const auto& [name, value] : row.error) std::printf("  %s %.4g", name.c_str(), value);
     std::printf("\n");
     std::fflush(stdout);
 }
@@ -84,6 +86,7 @@ void add_bench(CLI::App& app) {
     bench->add_option("NAME", arguments->name, "an experiment, or `list`")->required();
     bench->add_option("--json", arguments->json, "write the rows as JSON Lines");
     bench->add_option("--scene", o.scene, "another scene than the experiment's own");
+    bench->add_option("--camera", o.camera, "of the scene, by name or index, where an experiment makes images (the first)");
     bench->add_option("--views", o.views, "numbers of views, separated by commas")->delimiter(',')->check(CLI::Range(1u, 1u << 20));
     bench->add_option("--samples", o.log2_samples, "log2 of the number of surface samples (20)")->check(CLI::Range(0u, 26u));
     bench->add_option("--map-size", o.map_size, "texels a side of a half map (32)")->check(CLI::Range(2u, 1024u));

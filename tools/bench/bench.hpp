@@ -59,5 +59,7 @@ const std::vector<Bench>& benches();
 
 // bench/manylods.cpp
 void bench_manylods(engine::Device& device, const BenchOptions& options, const RowSink& sink);
+// bench/table1.cpp
+void bench_table1(engine::Device& device, const BenchOptions& options, const RowSink& sink);
 
 }  // namespace myriad::tools

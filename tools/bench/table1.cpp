@@ -1,0 +1,144 @@
+// `myriad bench manylods-table1`: Table 1 of ManyLoDs. A light goes around the scene, 1 and 10 degrees a frame, and the maps of its VPLs
+// are drawn anew in each frame. Rows: the paper's competitors and the three updates of the cuts; `ms` is what the maps take, cut and
+// splat or what stands in their place, `error` is the last frame's, against the same VPLs with exact rays.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+
+#include "scenes/moment.hpp"
+#include "scenes/sky.hpp"
+#include "tools/bench/bench.hpp"
+#include "tools/metrics.hpp"
+#include "tools/render_image.hpp"
+
+namespace myriad::tools {
+namespace {
+
+using passes::CutUpdate;
+using passes::Visibility;
+
+struct Technique {
+    const char* name;
+    Visibility visibility;
+    CutUpdate update = CutUpdate::basic;
+    bool revalidate = false;
+};
+
+// Both ways of the incremental update are rows: the paper's looks at every node-view of the last cut again.
+const Technique techniques[] = {
+    {"brute", Visibility::brute},
+    {"ism", Visibility::ism},
+    {"basic", Visibility::manylods},
+    {"incremental", Visibility::manylods, CutUpdate::incremental, true},
+    {"incremental", Visibility::manylods, CutUpdate::incremental},
+    {"lazy", Visibility::manylods, CutUpdate::lazy},
+};
+
+// The passes that make maps.
+bool makes_maps(const std::string& pass) { return pass == "cut" || pass == "splat" || pass == "brute" || pass == "ism"; }
+
+struct Turntable {
+    const scenes::Scene& scene;
+    const scenes::Triangles& triangles;
+    scenes::Camera camera;
+
+    // Lights at `degrees` around the vertical through the scene's middle.
+    scenes::Moment at(double degrees) const {
+        scenes::Moment moment = scenes::moment_at(scene, triangles.motion, 0);
+        const double a = degrees * 3.14159265358979323846 / 180;
+        const glm::dmat3 turn(std::cos(a), 0, -std::sin(a), 0, 1, 0, std::sin(a), 0, std::cos(a));
+        const glm::dvec3 middle = 0.5 * (glm::dvec3(triangles.lo) + glm::dvec3(triangles.hi));
+        for (scenes::Light& light : moment.lights) {
+            light.position = glm::vec3(middle + turn * (glm::dvec3(light.position) - middle));
+            light.direction = glm::vec3(glm::normalize(turn * glm::dvec3(light.direction)));
+        }
+        return moment;
+    }
+};
+
+passes::FrameSettings frame_settings(const BenchOptions& options, uint32_t views) {
+    passes::FrameSettings settings;
+    settings.width = 320, settings.height = 180;
+    settings.vpls = views;
+    settings.seed = options.seed;
+    settings.log2_samples = options.log2_samples;
+    settings.maps.map_size = options.map_size;
+    settings.maps.epsilon = options.epsilon;
+    return settings;
+}
+
+}  // namespace
+
+void bench_table1(engine::Device& device, const BenchOptions& options, const RowSink& sink) {
+    const std::string source = options.scene.empty() ? "builtin:hairball" : options.scene;
+    scenes::Scene scene = scenes::load(source, options.seed);
+    scenes::apply_sky(scene, scenes::SkyChoice::automatic);
+    const scenes::Triangles triangles = scenes::flatten(scene);
+    if (scene.lights.empty()) throw InputError("\"" + source + "\" has no punctual light to move; give another --scene");
+    const Turntable table{scene, triangles, scenes::pick_camera(scene, triangles, options.camera)};
+    const std::vector<uint32_t> counts = options.views.empty() ? std::vector<uint32_t>{1024} : options.views;
+    std::printf("scene: %s, %zu triangles, 2^%u samples, maps 2 x %u^2, epsilon %g\n", source.c_str(), size_t(triangles.count()), options.log2_samples,
+                options.map_size, options.epsilon);
+    for (const uint32_t views : counts)
+        for (const double step : {1.0, 10.0}) {
+            // The first frame warms up, lets lists grow, and is what the next starts from.
+            const auto play = [&](passes::Frame& frame, auto after) {
+                for (uint32_t f = 0; f <= options.repeats; ++f) {
+                    frame.move_to(table.at(f * step));
+                    frame.render(table.camera);
+                    if (f > 0) after();
+                }
+                return read_image(device, frame, {});
+            };
+            const auto reference = [&] {
+                passes::FrameSettings settings = frame_settings(options, views);
+                settings.visibility = Visibility::rays;
+                passes::Frame frame(device, scene, triangles, settings);
+                return play(frame, [] {});
+            }();
+            for (const Technique& technique : techniques) {
+                passes::FrameSettings settings = frame_settings(options, views);
+                settings.visibility = technique.visibility;
+                settings.maps.update = technique.update;
+                settings.maps.revalidate = technique.revalidate;
+                device.reset_memory_peaks();
+                passes::Frame frame(device, scene, triangles, settings);
+                BenchRow row;
+                row.bench = "manylods-table1";
+                row.scene = std::filesystem::path(source).filename().string();
+                row.technique = technique.name;
+                row.views = views;
+                row.settings = {{"light_step_deg", step}, {"map_size", options.map_size}, {"width", settings.width}, {"height", settings.height}};
+                if (technique.visibility == Visibility::manylods) row.settings["epsilon"] = options.epsilon, row.settings["samples"] = uint64_t(1) << options.log2_samples;
+                if (technique.update == CutUpdate::incremental) row.settings["revalidate"] = technique.revalidate ? "all" : "due";
+                if (technique.update == CutUpdate::lazy) row.settings["q"] = settings.maps.lazy_edges;
+                std::vector<double> node_views, invalid;
+                const Image image = play(frame, [&] {
+                    double total = 0;
+                    std::map<std::string, double> stages;
+                    for (const engine::PassTime& pass : frame.times())
+                        if (makes_maps(pass.name)) total += pass.gpu_ms, stages[pass.name] += pass.gpu_ms;
+                    row.ms.ms.push_back(total);
+                    for (const auto& [name, ms] : stages) row.stages[name].ms.push_back(ms);
+                    if (!frame.counters().maps) return;
+                    const passes::MapCounters& maps = *frame.counters().maps;
+                    node_views.push_back(double(maps.node_views));
+                    invalid.push_back(maps.cut ? double(maps.invalid) / double(maps.cut) : 0);
+                    if (maps.cut) row.counters["cut"] = double(maps.cut);
+                    if (maps.triangle_views) row.counters["triangle_views"] = double(maps.triangle_views);
+                });
+                if (row.counters.contains("cut")) row.counters["node_views"] = Samples{node_views}.median();
+                if (technique.update == CutUpdate::lazy) row.counters["invalid_share"] = Samples{invalid}.median();
+                for (const auto& [kind, use] : device.memory()) row.bytes[kind == "lists" ? "pairs" : kind] = use.peak;
+                row.bytes.try_emplace("pairs", 0);
+                row.bytes.try_emplace("atlas", 0);
+                const Metrics metrics = measure(reference, image, 0.01);
+                row.error = {{"relMSE", metrics.rel_mse}, {"SSIM", metrics.ssim}};
+                sink(row);
+            }
+        }
+}
+
+}  // namespace myriad::tools
