@@ -64,7 +64,7 @@ Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::T
     : device_(device), settings_(settings), recorder_(device), geometry_(step("uploading triangles", [&] { return Geometry(device, triangles, data); })),
       lights_(step("listing lights", [&] { return LightTable(device, scene, triangles, data); })),
       bvh_(step("building the ray tree", [&] { return derived.bvh(device, compute::BvhQuality::quick, geometry_.opacity()); })),
-      gbuffer_(device, settings.width, settings.height, bvh_.constants()), compose_(device, settings.width, settings.height),
+      gbuffer_(device, settings.width, settings.height, bvh_.constants(), settings.brdf == Brdf::gltf && data.glossy), compose_(device, settings.width, settings.height),
       exhausted_(device, "frame", "exhausted walks", 1), host_words_(device, "frame", "frame words", 6, engine::Location::host) {
     background_ = scene.background;
     const compute::WorldTriangles& world = derived.world();
@@ -77,10 +77,11 @@ Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::T
     size_.stored_triangles = triangles.triangles.size();
     size_.instances = std::count_if(world.instances.begin(), world.instances.end(), [](const Instance& i) { return !(i.flags & instance_in_world); });
     size_.lights = lights_.count();
+    size_.glossy = gbuffer().glossy();
     size_.bvh_nodes = bvh_.nodes();
 
     if (DeformPass::needed(triangles)) deform_.emplace(device, triangles.motion);
-    if (DirectPass::needed(lights_)) direct_.emplace(device, settings.width, settings.height, 0, bvh_.constants());
+    if (DirectPass::needed(lights_)) direct_.emplace(device, settings.width, settings.height, 0, bvh_.constants({{glossy_constant, size_.glossy}}));
     if (lights_.power() > 0 && settings.vpls > 0 && !triangles.triangles.empty()) make_indirect(derived, triangles.hi - triangles.lo);
     step("compiling kernels", [&] { recorder_.warm_up(); });
     if (vpl_) step("finding where light goes", [&] { prepare_paths(); });
@@ -94,8 +95,8 @@ void Frame::make_indirect(compute::Derived& derived, const vec3& extent) {
     const FrameSettings& settings = settings_;
     vpl_.emplace(device_, settings.vpls, bvh_.constants());
     vpl_->sure_paths(lights_, settings.bounces);  // throws when not one path fits
-    gather_.emplace(device_, gather_visibility(settings.visibility), settings.width, settings.height, bvh_.constants());
-    if (settings.filter && block_ > 1) filter_.emplace(device_, settings.width, settings.height);
+    gather_.emplace(device_, gather_visibility(settings.visibility), settings.width, settings.height, bvh_.constants(), size_.glossy);
+    if (settings.filter && block_ > 1) filter_.emplace(device_, settings.width, settings.height, size_.glossy);
     if (settings.visibility == Visibility::manylods) {
         tree_.emplace(step("sampling the surface", [&] { return derived.bsh(device_, settings.log2_samples, settings.seed); }));
         size_.samples = tree_->leaves();
@@ -192,10 +193,9 @@ void Frame::render_once(const scenes::Camera& camera) {
         vpl_->record(recorder_, geometry_, bvh_, lights_, settings_.bounces, settings_.seed);
     }
     if (vpl_) gather_indirect(pixel_angle);
-    const engine::Array<vec4>* irradiance = !vpl_ ? nullptr : filter_ ? &filter_->filtered() : &gather_->irradiance();
     {
         auto scope = recorder_.scope("compose");
-        compose_.record(recorder_, gbuffer(), irradiance, direct());
+        compose_.record(recorder_, gbuffer(), irradiance(), direct());
     }
     read_back_words();
     if (vpl_) counters_.vpls = host_words_.span()[0];

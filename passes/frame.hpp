@@ -31,6 +31,12 @@ enum class Visibility {
     none,      // every VPL reaches every receiver
 };
 
+// How what the camera sees reflects.
+enum class Brdf {
+    gltf,     // as glTF's materials say: a GGX lobe over a diffuse base (passes/brdf)
+    diffuse,  // the base alone: metals are black
+};
+
 struct FrameSettings {
     uint32_t width = 640, height = 360;
     uint32_t vpls = 4096;         // the most VPLs; 0: no indirect light
@@ -38,6 +44,7 @@ struct FrameSettings {
     uint32_t seed = 1;
     uint32_t subset = 256;        // VPLs that each pixel gathers, about; 0: all
     bool filter = true;
+    Brdf brdf = Brdf::gltf;
     Visibility visibility = Visibility::manylods;
     MapSettings maps;
     uint32_t log2_samples = 20;   // surface samples, leaves of the BSH
@@ -55,6 +62,7 @@ struct SceneSize {
     uint64_t triangles = 0;                       // in the world
     uint64_t stored_triangles = 0, instances = 0; // fewer where instances share them; instances that do
     uint64_t samples = 0, bsh_blocks = 0, bvh_nodes = 0, lights = 0;
+    bool glossy = false;                          // some surface is lit as such
 };
 
 // A step of a frame's construction, on the host's clock.
@@ -90,6 +98,8 @@ public:
     const GBuffer& gbuffer() const { return gbuffer_.gbuffer(); }
     const engine::Array<vec4>& beauty() const { return compose_.beauty(); }
     const engine::Array<vec4>& indirect() const { return compose_.indirect(); }
+    // Of indirect light what glossy lobes reflect: the second half of this. Null: nothing is glossy, or there is no such light.
+    const engine::Array<vec4>* mirrored() const { return gather_ && gbuffer().glossy() ? irradiance() : nullptr; }
     const engine::Array<vec4>* direct() const { return direct_ ? &direct_->radiance() : nullptr; }  // null: no punctual lights
     const VplPass* vpls() const { return vpl_ ? &*vpl_ : nullptr; }                              // null: nothing shines, or --vpls 0
     const compute::Bsh* tree() const { return tree_ ? &*tree_ : nullptr; }
@@ -119,6 +129,7 @@ private:
     void gather_indirect(float pixel_angle);
     void read_back_words();
     void report(const std::string& stage, double done) const;
+    const engine::Array<vec4>* irradiance() const { return !vpl_ ? nullptr : filter_ ? &filter_->filtered() : &gather_->irradiance(); }
 
     engine::Device& device_;
     FrameSettings settings_;

@@ -30,6 +30,13 @@ std::vector<vec4> normals(engine::Device& device, const passes::GBuffer& gbuffer
     return out;
 }
 
+std::vector<vec4> specular(engine::Device& device, const passes::Frame& frame, size_t pixels) {
+    if (!frame.mirrored()) return std::vector<vec4>(pixels, vec4(0));
+    std::vector<vec4> both = engine::download(device, *frame.mirrored());
+    both.erase(both.begin(), both.begin() + long(pixels));
+    return both;
+}
+
 }  // namespace
 
 Image read_image(engine::Device& device, const passes::Frame& frame, const std::vector<std::string>& layers) {
@@ -43,6 +50,8 @@ Image read_image(engine::Device& device, const passes::Frame& frame, const std::
             add_colour(image, layer, frame.direct() ? engine::download(device, *frame.direct()) : std::vector<vec4>(image.pixels(), vec4(0)));
         } else if (layer == "indirect") {
             add_colour(image, layer, engine::download(device, frame.indirect()));
+        } else if (layer == "specular") {
+            add_colour(image, layer, specular(device, frame, image.pixels()));
         } else if (layer == "emission") {
             add_colour(image, layer, engine::download(device, gbuffer.emitted));
         } else if (layer == "albedo") {

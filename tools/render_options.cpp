@@ -35,7 +35,7 @@ void add_outputs(CLI::App& command, RenderOptions& o) {
         if (text != "auto") o.exposure = parse_number("--exposure", text, 1e-30f, 1e30f);
     });
     add_parsed(command, "--aov", "LIST", "", "further layers of the EXR: all, or some of " + CLI::detail::join(layer_names(), ",") + ";\n"
-               "N: shading normal, P: position (m), Z: depth along the camera's axis (m), all 0 where nothing is seen", [&o](const std::string& text) {
+               "specular: of indirect, what glossy lobes reflect; N: shading normal, P: position (m), Z: depth along the camera's axis (m), all 0 where nothing is seen", [&o](const std::string& text) {
         o.layers = parse_list("--aov", text, layer_names());
     });
     command.add_flag("--float", o.full_floats, "colours of the EXR as 32-bit floats instead of halves (P and Z always are)");
@@ -52,6 +52,7 @@ void add_technique(CLI::App& command, passes::FrameSettings& s) {
     add_parsed(command, "--gather", "all|subset:K", show_gather(s.subset), "VPLs that each pixel gathers: all, or about K, a different subset\n"
                "for each pixel of a block", [&s](const std::string& text) { s.subset = parse_gather("--gather", text); });
     add_choice(command, "--filter", s.filter, {{"on", true}, {"off", false}}, "average the subsets of blocks of pixels, across no edge");
+    add_choice(command, "--brdf", s.brdf, brdfs(), "how what is seen reflects: as glTF's metallic-roughness materials say, or their diffuse part\nalone, metals black. VPLs are diffuse in either case");
     add_number(command, "--vpl-bound", s.vpl_bound, 1e-30f, 1e30f, "bound of the geometry term, 1/m^2; unless given pi * VPLs / area");
     add_whole(command, "--map-size", s.maps.map_size, 2, 1024, "texels a side of each half of a map");
     add_number(command, "--epsilon", s.maps.epsilon, 1e-3f, 1e6f, "largest diameter of a node in the cut, in texels of its map");
@@ -94,6 +95,12 @@ const Choices<passes::Visibility>& visibilities() {
     return choices;
 }
 
+const Choices<passes::Brdf>& brdfs() {
+    using passes::Brdf;
+    static const Choices<Brdf> choices = {{"gltf", Brdf::gltf}, {"diffuse", Brdf::diffuse}};
+    return choices;
+}
+
 const Choices<compute::AppendMode>& append_modes() {
     using compute::AppendMode;
     static const Choices<AppendMode> choices = {{"scan", AppendMode::scan}, {"atomic", AppendMode::atomic}};
@@ -128,7 +135,7 @@ const Choices<scenes::Sharing>& sharings() {
 }
 
 const std::vector<std::string>& layer_names() {
-    static const std::vector<std::string> names = {"direct", "indirect", "emission", "albedo", "N", "P", "Z"};
+    static const std::vector<std::string> names = {"direct", "indirect", "specular", "emission", "albedo", "N", "P", "Z"};
     return names;
 }
 

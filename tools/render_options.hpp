@@ -36,6 +36,7 @@ struct RenderOptions {
 };
 
 const Choices<passes::Visibility>& visibilities();
+const Choices<passes::Brdf>& brdfs();
 const Choices<compute::AppendMode>& append_modes();
 // --update: basic, incremental, lazy or lazy:q.
 std::string show_update(const passes::MapSettings& maps);

@@ -30,7 +30,7 @@ double rounded(double ms) { return std::round(ms * 1e4) / 1e4; }  // finer is no
 
 ordered_json scene_json(const RunRecord& run) {
     ordered_json scene = {{"name", run.scene}, {"camera", run.camera}, {"triangles", run.size.triangles}, {"lights", run.size.lights},
-                          {"bvh_nodes", run.size.bvh_nodes}};
+                          {"glossy", run.size.glossy}, {"bvh_nodes", run.size.bvh_nodes}};
     if (run.size.instances) scene["instances"] = run.size.instances, scene["stored_triangles"] = run.size.stored_triangles;
     if (run.size.samples) scene["samples"] = run.size.samples;
     if (run.size.bsh_blocks) scene["bsh_blocks"] = run.size.bsh_blocks;
@@ -124,7 +124,7 @@ std::vector<PassSum> median_passes(const std::vector<FrameRun>& frames) {
 }
 
 ordered_json settings_json(const passes::FrameSettings& s, float vpl_bound) {
-    ordered_json json = {{"width", s.width}, {"height", s.height}, {"seed", s.seed}, {"vpls", s.vpls}};
+    ordered_json json = {{"width", s.width}, {"height", s.height}, {"seed", s.seed}, {"brdf", choice_name(brdfs(), s.brdf)}, {"vpls", s.vpls}};
     if (s.vpls == 0) return json;
     json["bounces"] = s.bounces;
     json["visibility"] = choice_name(visibilities(), s.visibility);

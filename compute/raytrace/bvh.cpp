@@ -54,7 +54,7 @@ BvhRef Bvh::read(engine::Recorder& recorder) const {
             .instances = instances_.count() ? recorder.read(instances_) : Instances{},
             .opacity = opacity_ ? opacity_(recorder) : OpacityRef{},
             .loop_budget = loop_budget_,
-            .padding = 0};
+            .reach = 0};
 }
 
 }  // namespace myriad::compute

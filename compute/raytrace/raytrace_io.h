@@ -65,7 +65,7 @@ struct BvhRef {
     Instances instances;  // the tree's own; first_id is what to add to the ids of its triangles
     OpacityRef opacity;   // if any triangle asks
     uint loop_budget;     // see trace_exhausted in trace.glsl
-    uint padding;         // C++ would add it anyway
+    float reach;          // the scene's largest absolute coordinate, for ray_origin; 0 unless who hands this on sets it
 };
 
 MYRIAD_FN vec3 bvh_scale(uint frame) {

@@ -19,6 +19,7 @@ void ComposePass::record(engine::Recorder& recorder, const GBuffer& gbuffer, con
                                   .beauty = recorder.write(beauty_),
                                   .count = uint(gbuffer.pixels()),
                                   .has_irradiance = irradiance != nullptr,
+                                  .has_mirrored = irradiance && gbuffer.glossy(),
                                   .has_direct = direct != nullptr},
                       gbuffer.pixels());
 }

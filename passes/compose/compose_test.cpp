@@ -65,6 +65,16 @@ TEST_F(ComposeTest, equals_the_twin_with_and_without_each_light) {
     }
 }
 
+TEST_F(ComposeTest, lobes_add_what_they_reflect) {
+    HostGBuffer g = random_gbuffer(13, 5);
+    g.shine(0, vec3(1), 0.5f, vec3(0, 0, 1));
+    const auto both = random_image(2 * g.pixels(), 9);
+    const Result got = run(g, &both, nullptr);
+    EXPECT_EQ(differing(compose_ref(g, &both, nullptr), got), 0u);
+    for (size_t i = 0; i < g.pixels(); ++i) EXPECT_GT(got.indirect[i].x, both[g.pixels() + i].x);
+    EXPECT_EQ(differing(compose_ref(g, nullptr, nullptr), run(g, nullptr, nullptr)), 0u);
+}
+
 TEST_F(ComposeTest, nothing_lit_is_black_but_for_what_shines) {
     HostGBuffer g = random_gbuffer(8, 8);
     const Result shining = run(g, nullptr, nullptr);

@@ -13,7 +13,7 @@ public:
     // Create one only where it has something to do.
     static bool needed(const LightTable& lights) { return lights.has_punctual(); }
 
-    // `lights_a_dispatch`: at most so many are looped over at once; 0: what Device::loop_limit() allows.
+    // `variant` says with glossy_constant whether the G-buffer has gloss. `lights_a_dispatch`: at most so many are looped over at once; 0: what Device::loop_limit() allows.
     DirectPass(engine::Device& device, uint32_t width, uint32_t height, uint32_t lights_a_dispatch = 0,
                const engine::Constants& variant = {});
 
@@ -21,7 +21,7 @@ public:
 
     // [0] != 0: a ray's walk met the device's limit on loops (trace.glsl), and the result cannot be trusted.
     const engine::Array<uint>& exhausted() const { return exhausted_; }
-    // rgb: outgoing radiance, albedo included.
+    // rgb: outgoing radiance.
     const engine::Array<vec4>& radiance() const { return radiance_; }
 
 private:

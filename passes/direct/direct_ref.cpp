@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace myriad::passes {
 
@@ -34,7 +33,8 @@ std::vector<dvec3> direct_ref(const scenes::Scene& scene, const scenes::Triangle
             const double cosine = glm::dot(s.shading_normal, incident.to_light);
             if (cosine <= 0 || glm::dot(s.geometric_normal, incident.to_light) <= 0) continue;
             if (closest_ref(triangles, s.position, incident.to_light, 1e-5, incident.distance, there)) continue;
-            sum += s.albedo / std::numbers::pi * cosine * incident.irradiance;
+            const BrdfRef f = brdf_ref(s.gloss, s.shading_normal, -pixel.direction, incident.to_light);
+            sum += (s.albedo * f.diffuse + f.glossy * f.fresnel) * cosine * incident.irradiance;
         }
         radiance.push_back(sum);
     }

@@ -8,7 +8,8 @@ namespace myriad::passes {
 
 class FilterPass {
 public:
-    FilterPass(engine::Device& device, uint32_t width, uint32_t height);
+    // `glossy`: for a G-buffer with gloss, and a gather that made both halves.
+    FilterPass(engine::Device& device, uint32_t width, uint32_t height, bool glossy = false);
 
     // `pixel_angle`: the height of a pixel at distance 1 along the camera's axis.
     void record(engine::Recorder& recorder, const GBuffer& gbuffer, const engine::Array<vec4>& irradiance, uint32_t block, float pixel_angle);

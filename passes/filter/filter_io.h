@@ -7,7 +7,7 @@
 MYRIAD_BEGIN
 struct FilterPush {
     GBufferRef gbuffer;
-    Float4s irradiance;
+    Float4s irradiance;    // glossy: and then what lobes reflect; so has `filtered`
     Float4s filtered;
     uint block;            // k
     float pixel_angle;     // the height of a pixel at distance 1 along the camera's axis
@@ -28,6 +28,19 @@ MYRIAD_FN float filter_alike(vec3 p, vec3 n, vec3 n_g, vec3 q, vec3 m, float sca
     const float off = abs(dot(n_g, q - p)) / scale;
     const float near = max(1.0f - off * off, 0.0f);
     return c4 * c4 * c4 * c4 * near * near;
+}
+
+// Between lobes: none where either surface is matte, and less the more roughnesses differ.
+MYRIAD_FN float filter_alike_lobes(Gloss a, Gloss b) {
+    if (is_matte(a) || is_matte(b)) return 0.0f;
+    const float off = 4.0f * (unpack_high(a.f0_b_roughness) - unpack_high(b.f0_b_roughness));
+    const float near = max(1.0f - off * off, 0.0f);
+    return near * near;
+}
+// Lobes' light is averaged as a share of what they reflect of even light, so that a pattern of reflectances stays sharp. The neighbour
+// is taken to be seen from where the pixel is.
+MYRIAD_FN vec3 filter_share(Gloss g, vec3 n, vec3 view) {
+    return max(glossy_albedo(lobe_of(vec3(unpack_low(g.f0_rg), unpack_high(g.f0_rg), unpack_low(g.f0_b_roughness)), unpack_high(g.f0_b_roughness), view, n)), vec3(1e-3f));
 }
 MYRIAD_END
 

@@ -18,7 +18,7 @@ protected:
     std::vector<vec4> run(const HostGBuffer& host, const std::vector<vec4>& irradiance, uint block) {
         const GBuffer gbuffer = host.on(device);
         const auto on = on_device(irradiance);
-        FilterPass filter(device, host.width, host.height);
+        FilterPass filter(device, host.width, host.height, gbuffer.glossy());
         engine::Recorder recorder(device);
         filter.record(recorder, gbuffer, on, block, angle);
         recorder.submit_and_wait();
@@ -162,6 +162,40 @@ TEST_F(FilterTest, equals_the_twin_on_rough_ground) {
             const auto image = random_image(g);
             ASSERT_EQ(differing(filter_ref(g, image, k, angle), run(g, image, k)), 0u) << width << "x" << height << ", block " << k;
         }
+}
+
+TEST_F(FilterTest, lobes_equal_the_twin) {
+    for (uint k : {1u, 2u, 4u}) {
+        HostGBuffer g(33, 27);
+        plane(g, {0, 0, 4}, normalize(vec3(0.3f, 0.4f, -1)), [&](uint, uint) { return random() % 10 != 0; });
+        for (size_t i = 0; i < g.pixels(); ++i)
+            g.shine(i, vec3(uniform(0, 1), 0.04f, 0), !g.hit(i) || random() % 5 == 0 ? 0 : uniform(0.1f, 0.5f), normalize(vec3(0.1f, 0.2f, -1)));
+        auto image = random_image(g), mirrored = random_image(g);
+        image.insert(image.end(), mirrored.begin(), mirrored.end());
+        const auto got = run(g, image, k);
+        ASSERT_EQ(got.size(), image.size());
+        ASSERT_EQ(differing(filter_ref(g, image, k, angle), got), 0u) << "block " << k;
+    }
+}
+
+// A chequerboard of reflectances and one of matte and glossy keep their edges, while the sets' pattern vanishes.
+TEST_F(FilterTest, materials_stay_sharp_in_lobes) {
+    HostGBuffer g(48, 40);
+    plane(g, {0, 0, 10}, {0, 0, -1}, everywhere);
+    const auto squares = [&](size_t i) { return (i % g.width / 3 + i / g.width / 3) % 2 == 1; };
+    const vec3 view = normalize(vec3(0, 1, -1));
+    for (size_t i = 0; i < g.pixels(); ++i) g.shine(i, squares(i) ? vec3(0.9f, 0.5f, 0.04f) : vec3(0.04f), i % g.width < 24 ? 0.3f : squares(i) ? 0.3f : 0, view);
+    vec3 mean;
+    std::vector<vec4> light = pattern(g, 4, mean), image(g.pixels(), vec4(0));
+    const auto reflected = [&](size_t i, const vec3& l) { return is_matte(g.gloss[i]) ? vec3(0) : l * glossy_albedo(lobe_of(g.gloss[i], g.shading(i))); };
+    for (size_t i = 0; i < g.pixels(); ++i) image.push_back(vec4(reflected(i, vec3(light[i])), 0));
+    const auto got = run(g, image, 4);
+    for (uint y = 2; y + 2 < g.height; ++y)
+        for (uint x = 2; x < 22; ++x) {
+            const vec3 e = reflected(y * g.width + x, mean), v(got[g.pixels() + y * g.width + x]);
+            for (int c = 0; c < 3; ++c) ASSERT_NEAR(v[c], e[c], 3e-3f * e[c]) << x << " " << y;
+        }
+    for (size_t i = 0; i < g.pixels(); ++i) ASSERT_EQ(got[g.pixels() + i] == vec4(0), is_matte(g.gloss[i])) << i;
 }
 
 TEST_F(FilterTest, comparator_sees_a_wrong_pixel) {

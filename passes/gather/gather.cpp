@@ -8,13 +8,20 @@ namespace myriad::passes {
 
 using engine::passes_kernels;
 
+namespace {
+
+engine::Program program(engine::Device& device, GatherVisibility visibility, engine::Constants variant, bool glossy) {
+    variant[glossy_constant] = glossy;
+    if (visibility == GatherVisibility::rays) return {device, passes_kernels, "gather/rays", variant};
+    return {device, passes_kernels, "gather/maps", {{2, visibility == GatherVisibility::maps}, {glossy_constant, glossy}}};
+}
+
+}  // namespace
+
 GatherPass::GatherPass(engine::Device& device, GatherVisibility visibility, uint32_t width, uint32_t height,
-                       const engine::Constants& variant)
-    : device_(device), visibility_(visibility),
-      program_(visibility == GatherVisibility::rays ? engine::Program(device, passes_kernels, "gather/rays", variant)
-                                                    : engine::Program(device, passes_kernels, "gather/maps",
-                                                                      {{2, visibility == GatherVisibility::maps}})),
-      irradiance_(device, "images", "irradiance", uint64_t(width) * height) {}
+                       const engine::Constants& variant, bool glossy)
+    : device_(device), visibility_(visibility), program_(program(device, visibility, variant, glossy)),
+      irradiance_(device, "images", "irradiance", uint64_t(width) * height * (glossy ? 2 : 1)) {}
 
 uint32_t GatherPass::max_vpls(uint32_t block) const {
     // A ray may take thousands of loop iterations, a map look-up takes the one of its VPL.
@@ -53,19 +60,23 @@ void GatherPass::record_maps(engine::Recorder& recorder, const GatherInputs& in,
 void GatherPass::record_rays(engine::Recorder& recorder, const GatherInputs& in, uint32_t first, uint32_t limit, const compute::Bvh& bvh,
                              float reach, const engine::Array<uint>& status) {
     assert(visibility_ == GatherVisibility::rays && first % (in.block * in.block) == 0);
+    const auto tree = [&] {
+        BvhRef ref = bvh.read(recorder);
+        ref.reach = reach;
+        return ref;
+    };
     for (uint32_t done = 0, part = max_vpls(in.block); done < limit; done += part)
         recorder.dispatch(program_,
                           GatherRaysPush{.gbuffer = in.gbuffer.read(recorder),
                                          .vpls = recorder.read(in.vpls),
                                          .count = recorder.read(in.count),
                                          .irradiance = recorder.write(irradiance_),
-                                         .bvh = bvh.read(recorder),
+                                         .bvh = tree(),
                                          .status = recorder.write(status),
                                          .first = first + done,
                                          .limit = std::min(part, limit - done),
                                          .block = in.block,
-                                         .bound = in.bound,
-                                         .reach = reach},
+                                         .bound = in.bound},
                           threads(in));
 }
 

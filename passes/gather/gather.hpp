@@ -24,7 +24,9 @@ struct GatherInputs {
 
 class GatherPass {
 public:
-    GatherPass(engine::Device& device, GatherVisibility visibility, uint32_t width, uint32_t height, const engine::Constants& variant = {});
+    // `glossy`: for a G-buffer with gloss.
+    GatherPass(engine::Device& device, GatherVisibility visibility, uint32_t width, uint32_t height, const engine::Constants& variant = {},
+               bool glossy = false);
 
     void clear(engine::Recorder& recorder) { recorder.fill(irradiance_, 0); }
 
@@ -41,7 +43,8 @@ public:
     // The most VPLs that one recording may take, so that no invocation's loops exceed the device's limit.
     uint32_t max_vpls(uint32_t block) const;
 
-    const engine::Array<vec4>& irradiance() const { return irradiance_; }  // W/m^2, rgb
+    // W/m^2, rgb, a pixel each; glossy: then as many of radiance that lobes reflect.
+    const engine::Array<vec4>& irradiance() const { return irradiance_; }
 
 private:
     uint64_t threads(const GatherInputs& in) const;

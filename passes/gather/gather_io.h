@@ -13,7 +13,7 @@ struct GatherPush {
     Uints count;              // how many VPLs there are
     Uints atlas;              // maps only: of VPLs [first_map, …)
     Uints failed;             // maps only, may be null: failed.at[0] != 0 says that the atlas is not complete, and nothing is added
-    Float4s irradiance;
+    Float4s irradiance;       // glossy: then, pixel by pixel, what lobes reflect of the same light (radiance)
     uint first, limit;        // VPLs [first, min(first + limit, count)); first is a multiple of block^2
     uint block;               // k: sets of VPLs, and pixels of a block, are k x k
     uint map_size, first_map; // maps only
@@ -28,28 +28,47 @@ struct GatherRaysPush {
     Vpls vpls;
     Uints count;
     Float4s irradiance;
-    BvhRef bvh;
+    BvhRef bvh;               // with reach
     Uints status;             // status.at[0] is set when a traversal ran out of its loop budget
     uint first, limit, block;
     float bound;
-    float reach;              // the scene's largest absolute coordinate, for ray_origin
 };
 
-// The part of the transfer that needs no visibility: min(G, bound), or 0 where either side faces away. x is the receiver's
-// position, n its normal.
-MYRIAD_FN float bounded_geometry(vec3 x, vec3 n, vec3 vpl_position, vec3 vpl_normal, float bound) {
+// The part of the transfer that needs no visibility; all 0 where either side faces away. A VPL's flux / pi times `diffuse` is what
+// counts as irradiance, and times brdf_fresnel(f0, power) * glossy it is radiance that the lobe reflects.
+struct Transfer {
+    float diffuse;            // 1/m^2
+    float glossy;             // 1/(m^2 sr)
+    float power;
+};
+// x is the receiver's position, n its normal.
+MYRIAD_FN Transfer transfer_of(vec3 x, vec3 n, Lobe lobe, vec3 vpl_position, vec3 vpl_normal, float bound) {
+    Transfer t;
+    t.diffuse = 0.0f;
+    t.glossy = 0.0f;
+    t.power = 0.0f;
     const vec3 d = vpl_position - x;
     const float d2 = dot(d, d);
     const float cos_receiver = dot(n, d);        // times |d|
     const float cos_vpl = -dot(vpl_normal, d);   // times |d|
-    if (!(d2 > 0.0f && cos_receiver > 0.0f && cos_vpl > 0.0f)) return 0.0f;
+    if (!(d2 > 0.0f && cos_receiver > 0.0f && cos_vpl > 0.0f)) return t;
     // Divided one by one: d^4 would leave the range of floats at distances that are still fine.
-    return min((cos_receiver / d2) * (cos_vpl / d2), bound);
+    const float g = (cos_receiver / d2) * (cos_vpl / d2);
+    t.diffuse = min(g, bound);
+    if (lobe.alpha2 == 0.0f) return t;
+    // The VPL stands for a patch, a disc of area pi / bound. Seen under a radius of 1 / sqrt(bound d^2), it moves the half-way vector by
+    // half of that, and its neighbours as much again: so wide the lobe must be at least, or it would show VPLs and not what they stand for.
+    const Reflectance r = reflectance_of(lobe, n, d / sqrt(d2), 1.0f / (bound * d2));
+    t.diffuse *= r.diffuse;
+    // A patch of radiance F / (pi a) is reflected as brightly at most: flux / pi * glossy <= F / (pi a), with a = pi / bound.
+    t.glossy = min(r.glossy * g, bound * (1.0f / 3.14159265f));
+    t.power = r.power;
+    return t;
 }
 
-// Irradiance that a VPL brings: flux * (bounded_geometry * gather_scale). Scaled VPL by VPL, so that a sum may be continued.
+// Irradiance that a VPL brings: flux * (diffuse * gather_scale). Scaled VPL by VPL, so that a sum may be continued.
 MYRIAD_FN float gather_scale(uint block) { return float(block * block) / 3.14159265f; }
-// No pixel gets more, so that later sums stay finite whatever the flux (W/m^2; the sun brings 1e3).
+// No pixel gets more, so that later sums stay finite whatever the flux (W/m^2; the sun brings 1e3); of radiance neither.
 const float gather_most = 1e30f;
 
 // How a VPL at `vpl_position` looks for the receiver x with geometric normal n_g in its map: four texels around x's direction,

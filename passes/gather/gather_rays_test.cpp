@@ -38,7 +38,7 @@ protected:
         const GBuffer gbuffer = g.on(device);
         const auto on = on_device(vpls);
         const auto count = on_device(std::vector<uint>{uint(vpls.size())}), status = on_device(std::vector<uint>{0});
-        GatherPass gather(device, GatherVisibility::rays, width, height, bvh.constants());
+        GatherPass gather(device, GatherVisibility::rays, width, height, bvh.constants(), gbuffer.glossy());
         const GatherInputs in{gbuffer, on, count, block, 2};
         engine::Recorder recorder(device);
         gather.clear(recorder);
@@ -66,6 +66,13 @@ TEST_F(GatherRaysTest, equals_brute_force) {
     const auto free = gather_ref(g, vpls, 1, 2), hidden = twin(vpls, 1);
     for (size_t i = 0; i < free.size(); ++i) seen += hidden[i].irradiance.x, all += free[i].irradiance.x;
     EXPECT_TRUE(seen > 0.1 * all && seen < 0.9 * all) << seen / all;
+}
+
+TEST_F(GatherRaysTest, glossy_receivers_equal_brute_force) {
+    make(40);
+    polish(g);
+    const auto vpls = random_vpls(120);
+    for (uint block : {1u, 2u}) EXPECT_TRUE(near(twin(vpls, block), trace(vpls, block, 64)));
 }
 
 TEST_F(GatherRaysTest, light_falls_through_holes) {

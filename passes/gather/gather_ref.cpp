@@ -25,10 +25,22 @@ std::vector<GatherRef> gather_ref(const HostGBuffer& gbuffer, const std::vector<
             const double rounding = std::min(4e-7 / (distance * distance), bound);
             if (std::min(cos_receiver, cos_vpl) < -1e-6) continue;
             const Seen s = seen(p, i);
-            out[p].irradiance += exitance * g * s.share;
-            out[p].slack += exitance * ((s.share + s.slack) * rounding + s.slack * g);
+            const Lobe lobe = gbuffer.lobe(p);
+            const double geometry = std::max(cos_receiver, 0.0) * std::max(cos_vpl, 0.0) / (distance * distance);
+            const BrdfRef f = brdf_ref(gbuffer.gloss_ref(p), dvec3(gbuffer.shading(p)), dvec3(lobe.view), d / distance, 1 / (bound * distance * distance));
+            const double diffuse = std::numbers::pi * f.diffuse;
+            out[p].irradiance += exitance * (diffuse * g * s.share);
+            out[p].slack += exitance * (diffuse * ((s.share + s.slack) * rounding + s.slack * g));
+            const double glossy = std::min(f.glossy * geometry, bound / std::numbers::pi);
+            out[p].mirrored += exitance * f.fresnel * glossy * s.share;
+            // A cosine that is off by 4e-7 is so by much of itself at grazing angles.
+            // So is the half-way vector of opposite ways, in a lobe of this half-width.
+            const double half_width = std::sqrt(lobe.alpha2 + 1 / (bound * distance * distance));
+            const double doubt = std::min(4e-7 / std::min(cos_receiver, cos_vpl) + 2e-6 / (half_width * length(d / distance + dvec3(lobe.view))) + 1e-3, 1.0);
+            out[p].mirrored_slack += exitance * f.fresnel * glossy * (s.slack + doubt * (s.share + s.slack));
         }
         out[p].slack += 1e-5 * out[p].irradiance;
+        out[p].mirrored_slack += 1e-5 * out[p].mirrored;
     }
     return out;
 }

@@ -19,6 +19,7 @@ inline constexpr Seen seen_not{0, 0}, seen_whole{1, 0}, seen_unsure{0.5, 0.5};
 // rounding of positions and cosines may move.
 struct GatherRef {
     glm::dvec3 irradiance{0}, slack{0};
+    glm::dvec3 mirrored{0}, mirrored_slack{0};
 };
 
 using SeenRef = std::function<Seen(size_t pixel, size_t vpl)>;

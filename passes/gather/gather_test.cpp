@@ -43,6 +43,72 @@ TEST_F(GatherTest, equals_the_twin_at_all_sizes_and_blocks) {
         }
 }
 
+TEST_F(GatherTest, glossy_receivers_equal_the_twin) {
+    for (uint block : {1u, 2u, 4u})
+        for (float bound : {0.3f, 3.0f, 1e3f, 1e30f}) {
+            SCOPED_TRACE(testing::Message() << "block " << block << ", bound " << bound);
+            HostGBuffer g = random_gbuffer(33, 17);
+            polish(g);
+            const auto vpls = random_vpls(100);
+            const auto got = run(g, vpls, {.block = block, .bound = bound});
+            ASSERT_EQ(got.size(), 2 * g.pixels());
+            const auto expected = gather_ref(g, vpls, block, bound);
+            ASSERT_TRUE(near(expected, got));
+            double light = 0, slack = 0, diffuse = 0;
+            for (const GatherRef& r : expected) light += r.mirrored.x, slack += r.mirrored_slack.x, diffuse += r.irradiance.x / std::numbers::pi;
+            EXPECT_LT(slack, 5e-3 * light);
+            EXPECT_GT(light, 0.05 * diffuse);
+            // Split, and where some pixels are matte: the same bits.
+            ASSERT_TRUE(same(got, run(g, vpls, {.block = block, .bound = bound, .parts = {block * block, 5 * block * block}})));
+        }
+}
+
+// What makes VPLs sparkle: one near a mirror. A patch is reflected as brightly as it is, and no more, whatever the lobe.
+TEST_F(GatherTest, no_patch_is_brighter_in_a_mirror_than_itself) {
+    const float bound = 100, area = pi / bound;
+    HostGBuffer g(64, 16);
+    std::vector<Vpl> vpls{vpl({0, 0.5f, 0}, {0, -1, 0}, vec3(pi * area))};  // of radiance 1
+    for (size_t i = 0; i < g.pixels(); ++i) {
+        const vec3 x(std::pow(10.0f, -5 + 0.1f * float(i % 64)), 0, 0), to_vpl = normalize(vpls[0].position - x);
+        g.put(i, x, {0, 1, 0});
+        const vec3 mirror(-to_vpl.x, to_vpl.y, to_vpl.z);
+        g.shine(i, vec3(1), std::max(float(i / 64) / 16, brdf_least_roughness), i % 3 ? mirror : normalize(vec3(-1, 0.02f, 0)));
+    }
+    const auto got = run(g, vpls, {.bound = bound});
+    for (size_t i = 0; i < g.pixels(); ++i) ASSERT_LE(got[g.pixels() + i].x, 1.001f) << i;
+    // Without the bound it would be a thousand times as bright as that.
+    float most = 0;
+    for (const vec4& v : run(g, vpls, {})) most = std::max(most, v.x);
+    EXPECT_GT(most, 1000);
+}
+
+// A wall of VPLs of radiance 1 in the mirror of a floor: even, though each pixel's lobe is narrower than the VPLs' distance.
+TEST_F(GatherTest, mirrors_show_surfaces_and_not_vpls) {
+    const int n = 64;
+    std::vector<Vpl> wall;
+    for (int y = 0; y < n; ++y)
+        for (int x = 0; x < n; ++x) wall.push_back(vpl({(float(x) + 0.5f) / n * 8 - 4, (float(y) + 0.5f) / n * 8, -2}, {0, 0, 1}, vec3(pi * 64 / (n * n))));
+    HostGBuffer g(80, 1);
+    const vec3 eye(0, 2, 3);
+    for (size_t i = 0; i < g.pixels(); ++i) {
+        const vec3 x(0.5f * uniform(), 0, 0.5f + uniform(0, 0.5f));
+        g.put(i, x, {0, 1, 0});
+        g.shine(i, vec3(1), brdf_least_roughness, normalize(eye - x));
+    }
+    const auto spread = [&](float bound) {
+        double sum = 0, squares = 0;
+        const auto got = run(g, wall, {.bound = bound});
+        for (size_t i = 0; i < g.pixels(); ++i) sum += got[g.pixels() + i].x, squares += double(got[g.pixels() + i].x) * got[g.pixels() + i].x;
+        const double mean = sum / double(g.pixels());
+        std::printf("bound %g: mean %.3f, deviation %.3f\n", bound, mean, std::sqrt(std::max(squares / double(g.pixels()) / mean / mean - 1, 0.0)));
+        return std::pair{mean, std::sqrt(std::max(squares / double(g.pixels()) / mean / mean - 1, 0.0))};
+    };
+    const auto [mean, deviation] = spread(pi * n * n / 64);
+    EXPECT_NEAR(mean, 1, 0.06);
+    EXPECT_LT(deviation, 0.05);
+    EXPECT_GT(spread(1e30f).second, 1);
+}
+
 TEST_F(GatherTest, vpl_counts_at_boundaries) {
     const HostGBuffer g = random_gbuffer(19, 13);
     for (uint block : {1u, 2u, 4u, 8u})
@@ -140,7 +206,10 @@ TEST_F(GatherTest, hard_places_stay_finite) {
     HostGBuffer g(11, 11);
     std::vector<Vpl> vpls;
     for (size_t y = 0; y < 11; ++y) {
-        for (size_t x = 0; x < 11; ++x) g.put(y * 11 + x, {tiny[x], -tiny[y], x % 2 ? 1.0f : 0.0f}, y % 3 ? vec3(0, 1, 0) : direction());
+        for (size_t x = 0; x < 11; ++x) {
+            g.put(y * 11 + x, {tiny[x], -tiny[y], x % 2 ? 1.0f : 0.0f}, y % 3 ? vec3(0, 1, 0) : direction());
+            g.shine(y * 11 + x, vec3(1), x % 4 ? brdf_least_roughness : 0.5f, x % 3 ? g.shading(y * 11 + x) : direction());
+        }
         for (float flux : {0.0f, 1e-40f, 1.0f, 1e30f, 3e38f}) {
             vpls.push_back(vpl({0, tiny[y], 0}, {0, -1, 0}, vec3(flux)));
             vpls.push_back(vpl({1, 0, tiny[y]}, {1e-3f, -1, 0}, vec3(flux)));  // grazing

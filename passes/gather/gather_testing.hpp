@@ -28,6 +28,14 @@ protected:
             if (random() % 8) g.put(i, point(), direction());
         return g;
     }
+    // Lobes for most of its pixels, seen from above the surface or just below.
+    void polish(HostGBuffer& g) {
+        for (size_t i = 0; i < g.pixels(); ++i) {
+            if (!g.hit(i)) continue;
+            const float roughness = random() % 5 == 0 ? 0 : random() % 3 ? uniform(0.1f, 1) : brdf_least_roughness;
+            g.shine(i, random() % 2 ? vec3(0.04f) : 0.5f * (point() + 1.0f), roughness, normalize(g.shading(i) + 0.99f * direction()));
+        }
+    }
     std::vector<Vpl> random_vpls(size_t n) {
         std::vector<Vpl> vpls;
         for (size_t i = 0; i < n; ++i) vpls.push_back(vpl(point(1.5f), direction(), 2.0f * (point() + 1.0f)));
@@ -48,7 +56,7 @@ protected:
         const GBuffer gbuffer = host.on(device);
         const auto on = on_device(vpls);
         const auto count = on_device(std::vector<uint>{uint(vpls.size())});
-        GatherPass gather(device, o.atlas ? GatherVisibility::maps : GatherVisibility::none, host.width, host.height);
+        GatherPass gather(device, o.atlas ? GatherVisibility::maps : GatherVisibility::none, host.width, host.height, {}, gbuffer.glossy());
         const GatherInputs in{gbuffer, on, count, o.block, o.bound};
         const uint32_t all = uint32_t(vpls.size()) + o.beyond;
         std::vector<uint32_t> parts = o.parts;
@@ -72,12 +80,16 @@ protected:
 
     // The first pixel that is further from its twin than its slack.
     static ::testing::AssertionResult near(const std::vector<GatherRef>& expected, const std::vector<vec4>& got) {
-        if (expected.size() != got.size()) return ::testing::AssertionFailure() << "sizes differ";
+        const size_t n = expected.size();
+        if (got.size() != n && got.size() != 2 * n) return ::testing::AssertionFailure() << "sizes differ";
         for (size_t i = 0; i < got.size(); ++i)
-            for (int c = 0; c < 3; ++c)
-                if (!(std::abs(expected[i].irradiance[c] - got[i][c]) <= expected[i].slack[c]))
-                    return ::testing::AssertionFailure() << "pixel " << i << ", channel " << c << ": " << expected[i].irradiance[c] << " +- "
-                                                         << expected[i].slack[c] << " expected, " << got[i][c] << " found";
+            for (int c = 0; c < 3; ++c) {
+                const GatherRef& e = expected[i % n];
+                const double value = i < n ? e.irradiance[c] : e.mirrored[c], slack = i < n ? e.slack[c] : e.mirrored_slack[c];
+                if (!(std::abs(value - got[i][c]) <= slack))
+                    return ::testing::AssertionFailure() << (i < n ? "irradiance" : "mirrored light") << " of pixel " << i % n << ", channel " << c
+                                                         << ": " << value << " +- " << slack << " expected, " << got[i][c] << " found";
+            }
         return ::testing::AssertionSuccess();
     }
     // How much of the twin's light is slack: a comparison with much of it would show nothing.

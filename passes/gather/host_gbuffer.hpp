@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/transfer.hpp"
+#include "passes/brdf/brdf_ref.hpp"
 #include "passes/gbuffer/gbuffer.hpp"
 
 namespace myriad::passes {
@@ -12,6 +13,7 @@ struct HostGBuffer {
     uint32_t width, height;
     std::vector<vec4> positions, albedo, emitted;
     std::vector<uvec2> normals;
+    std::vector<Gloss> gloss;  // empty: all is matte
 
     // All misses.
     HostGBuffer(uint32_t w, uint32_t h)
@@ -30,10 +32,22 @@ struct HostGBuffer {
     }
     void put(size_t i, const vec3& at, const vec3& normal) { put(i, at, normal, normal); }
 
+    // A glossy surface, where `put` was before. Roughness 0 is a matte one.
+    void shine(size_t i, const vec3& f0, float roughness, const vec3& view) {
+        gloss.resize(pixels());
+        gloss[i] = pack_gloss(f0, roughness, view);
+    }
+    Lobe lobe(size_t i) const { return gloss.empty() ? matte_lobe() : lobe_of(gloss[i], shading(i)); }
+    GlossRef gloss_ref(size_t i) const {
+        if (gloss.empty() || is_matte(gloss[i])) return {};
+        const Lobe l = lobe(i);
+        return {glm::dvec3(l.f0), double(unpack_high(gloss[i].f0_b_roughness))};
+    }
+
     GBuffer on(engine::Device& device) const {
-        GBuffer g(device, width, height);
+        GBuffer g(device, width, height, !gloss.empty());
         const auto move = [&](const auto& from, const auto& to) { engine::upload_bytes(device, from.data(), to, from.size() * sizeof(from[0])); };
-        move(positions, g.positions), move(normals, g.normals), move(albedo, g.albedo), move(emitted, g.emitted);
+        move(positions, g.positions), move(normals, g.normals), move(albedo, g.albedo), move(emitted, g.emitted), move(gloss, g.gloss);
         return g;
     }
 };

@@ -4,6 +4,7 @@
 #include "engine/kernel.glsl"
 #include "passes/gather/gather_io.h"
 layout(constant_id = 2) const bool use_maps = true;
+layout(constant_id = glossy_constant) const bool glossy = false;
 layout(push_constant, scalar) uniform Push { GatherPush push; };
 
 float seen_in_texel(MapQuery q, int right, int below, uint map) {
@@ -28,19 +29,27 @@ void main() {
     const vec3 n = unpack_direction(normals.x);
     const vec3 n_g = unpack_direction(normals.y);
 
+    Lobe lobe = matte_lobe();
+    if (glossy) lobe = lobe_of(push.gbuffer.gloss.at[p], n);
+    const uint pixels = push.gbuffer.width * push.gbuffer.height;
+
     const uint sets = push.block * push.block;
     const float scale = gather_scale(push.block);
     const uint end = min(push.first + push.limit, push.count.at[0]);
     // Continues the sum that is there in order, so the bits do not depend on how VPLs are split over dispatches.
     vec3 sum = push.irradiance.at[p].xyz;
+    vec3 mirrored = vec3(0.0f);
+    if (glossy) mirrored = push.irradiance.at[pixels + p].xyz;
     // The index depends on the workgroup alone, so a VPL is read once for all its lanes.
     for (uint i = push.first + pixel.set; i < end; i += sets) {
         const Vpl vpl = push.vpls.at[i];
-        const float g = bounded_geometry(x, n, vpl.position, unpack_direction(vpl.normal), push.bound);
-        if (g > 0.0f) {
+        const Transfer t = transfer_of(x, n, lobe, vpl.position, unpack_direction(vpl.normal), push.bound);
+        if (t.diffuse > 0.0f) {
             const float seen = use_maps ? seen_in_map(x, n_g, vpl.position, (i - push.first_map) * map_texels(push.map_size)) : 1.0f;
-            sum += vpl.flux * (g * seen * scale);
+            sum += vpl.flux * (t.diffuse * seen * scale);
+            if (glossy) mirrored += vpl.flux * (t.glossy * seen * scale) * brdf_fresnel(lobe.f0, t.power);
         }
     }
     push.irradiance.at[p] = vec4(min(sum, vec3(gather_most)), 0.0f);
+    if (glossy) push.irradiance.at[pixels + p] = vec4(min(mirrored, vec3(gather_most)), 0.0f);
 }

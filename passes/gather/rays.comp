@@ -4,6 +4,7 @@
 #include "engine/kernel.glsl"
 #include "compute/raytrace/trace.glsl"
 #include "passes/gather/gather_io.h"
+layout(constant_id = glossy_constant) const bool glossy = false;
 layout(push_constant, scalar) uniform Push { GatherRaysPush push; };
 
 void main() {
@@ -16,19 +17,28 @@ void main() {
     const vec3 x = position.xyz;
     const uvec2 normals = push.gbuffer.normals.at[p];
     const vec3 n = unpack_direction(normals.x);
-    const vec3 origin = ray_origin(x, unpack_direction(normals.y), push.reach);
+    const vec3 origin = ray_origin(x, unpack_direction(normals.y), push.bvh.reach);
+
+    Lobe lobe = matte_lobe();
+    if (glossy) lobe = lobe_of(push.gbuffer.gloss.at[p], n);
+    const uint pixels = push.gbuffer.width * push.gbuffer.height;
 
     const uint sets = push.block * push.block;
     const float scale = gather_scale(push.block);
     const uint end = min(push.first + push.limit, push.count.at[0]);
     vec3 sum = receives ? push.irradiance.at[p].xyz : vec3(0.0f);  // as in maps.comp
+    vec3 mirrored = vec3(0.0f);
+    if (glossy && receives) mirrored = push.irradiance.at[pixels + p].xyz;
     for (uint i = push.first + pixel.set; i < end; i += sets) {
         const Vpl vpl = push.vpls.at[i];
-        const float g = receives ? bounded_geometry(x, n, vpl.position, unpack_direction(vpl.normal), push.bound) : 0.0f;
-        const bool asks = g > 0.0f;
+        const Transfer t = transfer_of(x, n, lobe, vpl.position, unpack_direction(vpl.normal), push.bound);
+        const bool asks = receives && t.diffuse > 0.0f;
         if (!subgroupAny(asks)) continue;
-        if (!trace_occluded(push.bvh, origin, vpl.position - origin, 0.0f, asks ? 1.0f : -1.0f) && asks) sum += vpl.flux * (g * scale);
+        if (trace_occluded(push.bvh, origin, vpl.position - origin, 0.0f, asks ? 1.0f : -1.0f) || !asks) continue;
+        sum += vpl.flux * (t.diffuse * scale);
+        if (glossy) mirrored += vpl.flux * (t.glossy * scale) * brdf_fresnel(lobe.f0, t.power);
     }
     if (receives) push.irradiance.at[p] = vec4(min(sum, vec3(gather_most)), 0.0f);
+    if (glossy && receives) push.irradiance.at[pixels + p] = vec4(min(mirrored, vec3(gather_most)), 0.0f);
     if (trace_exhausted) push.status.at[0] = 1u;
 }

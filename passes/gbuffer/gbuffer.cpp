@@ -16,21 +16,21 @@ CameraPush camera_push(const scenes::Camera& camera, uint32_t width, uint32_t he
             .up = vec3(axis(1) * tangent)};
 }
 
-GBuffer::GBuffer(engine::Device& device, uint32_t width_, uint32_t height_)
+GBuffer::GBuffer(engine::Device& device, uint32_t width_, uint32_t height_, bool glossy)
     : width(width_), height(height_), positions(device, "images", "g-buffer positions", pixels()),
-      normals(device, "images", "g-buffer normals", pixels()), albedo(device, "image", "g-buffer albedo", pixels()),
-      emitted(device, "images", "g-buffer emitted", pixels()) {
+      normals(device, "images", "g-buffer normals", pixels()), albedo(device, "images", "g-buffer albedo", pixels()),
+      gloss(device, "images", "g-buffer gloss", glossy ? pixels() : 0), emitted(device, "images", "g-buffer emitted", pixels()) {
     assert(pixels() > 0 && pixels() < uint64_t(1) << 32);
 }
 
 GBufferRef GBuffer::read(engine::Recorder& recorder) const {
     return {.positions = recorder.read(positions), .normals = recorder.read(normals), .albedo = recorder.read(albedo),
-            .width = width, .height = height};
+            .gloss = glossy() ? recorder.read(gloss) : Glosses{}, .width = width, .height = height};
 }
 
-GBufferPass::GBufferPass(engine::Device& device, uint32_t width, uint32_t height, const engine::Constants& variant)
+GBufferPass::GBufferPass(engine::Device& device, uint32_t width, uint32_t height, const engine::Constants& variant, bool glossy)
     : trace_(device, passes_kernels, "gbuffer/trace", variant), shade_(device, passes_kernels, "gbuffer/shade", variant),
-      gbuffer_(device, width, height), hits_(device, "images", "primary hits", gbuffer_.pixels()),
+      gbuffer_(device, width, height, glossy), hits_(device, "images", "primary hits", gbuffer_.pixels()),
       exhausted_(device, "images", "primary hits exhausted", 1) {}
 
 void GBufferPass::record(engine::Recorder& recorder, const Geometry& geometry, const compute::Bvh& bvh, const scenes::Camera& camera,
@@ -47,11 +47,13 @@ void GBufferPass::record(engine::Recorder& recorder, const Geometry& geometry, c
                                        .positions = recorder.write(gbuffer_.positions),
                                        .normals = recorder.write(gbuffer_.normals),
                                        .albedo = recorder.write(gbuffer_.albedo),
+                                       .gloss = gbuffer_.glossy() ? recorder.write(gbuffer_.gloss) : Glosses{},
                                        .emitted = recorder.write(gbuffer_.emitted),
                                        .eye = push.position,
                                        .forward = push.forward,
                                        .background = background,
-                                       .count = uint(gbuffer_.pixels())},
+                                       .count = uint(gbuffer_.pixels()),
+                                       .has_gloss = gbuffer_.glossy()},
                       gbuffer_.pixels());
 }
 

@@ -11,21 +11,24 @@ namespace myriad::passes {
 CameraPush camera_push(const scenes::Camera& camera, uint32_t width, uint32_t height);
 
 struct GBuffer {
-    GBuffer(engine::Device& device, uint32_t width, uint32_t height);
+    // `glossy`: with what the glossy lobes of surfaces need.
+    GBuffer(engine::Device& device, uint32_t width, uint32_t height, bool glossy = false);
     GBufferRef read(engine::Recorder& recorder) const;
     uint64_t pixels() const { return uint64_t(width) * height; }
+    bool glossy() const { return gloss.count() > 0; }
 
     uint32_t width, height;
     engine::Array<vec4> positions;  // see GBufferRef
     engine::Array<uvec2> normals;
     engine::Array<vec4> albedo;
+    engine::Array<Gloss> gloss;     // empty unless glossy
     engine::Array<vec4> emitted;    // rgb: radiance that the surface itself sends to the camera
 };
 
 class GBufferPass {
 public:
     // `variant`: specialisation constants that the scene needs of kernels, the same in all passes (Frame).
-    GBufferPass(engine::Device& device, uint32_t width, uint32_t height, const engine::Constants& variant = {});
+    GBufferPass(engine::Device& device, uint32_t width, uint32_t height, const engine::Constants& variant = {}, bool glossy = false);
 
     // `background`: radiance that pixels see where their rays leave the scene.
     void record(engine::Recorder& recorder, const Geometry& geometry, const compute::Bvh& bvh, const scenes::Camera& camera,

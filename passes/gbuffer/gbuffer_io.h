@@ -12,8 +12,11 @@ struct GBufferRef {
     Float4s positions;   // world; w: depth along the camera's axis in metres, 0 where there is nothing
     Uint2s normals;      // pack_direction of the shading normal, then of the geometric; both face the camera
     Float4s albedo;      // rgb; w: ray_reach of the triangle, so that rays can leave from here
+    Glosses gloss;       // where the G-buffer has it: for kernels that are told so (their constant `glossy`)
     uint width, height;
 };
+// The specialisation constant of kernels that light glossy surfaces, too.
+const uint glossy_constant = 18u;
 
 // A pinhole camera. The ray through image point (x, y), from (-1, -1) at the lower left to (1, 1), has the direction
 // forward + x * right + y * up, where `right` and `up` are as long as the tangents of half the angles of view.
@@ -47,16 +50,18 @@ struct GBufferShadePush {
     Float4s positions;
     Uint2s normals;
     Float4s albedo;
+    Glosses gloss;       // with has_gloss
     Float4s emitted;     // radiance that the surface itself sends to the camera, or what is behind everything
     vec3 eye;
     vec3 forward;
     vec3 background;     // radiance
     uint count;
+    uint has_gloss;
 };
 MYRIAD_END
 
 #ifdef __cplusplus
-static_assert(sizeof(myriad::GBufferRef) == 32 && sizeof(myriad::GBufferTracePush) <= 128 && sizeof(myriad::GBufferShadePush) <= 128);
+static_assert(sizeof(myriad::GBufferRef) == 40 && sizeof(myriad::GBufferTracePush) <= 128 && sizeof(myriad::GBufferShadePush) <= 128);
 #endif
 
 #endif

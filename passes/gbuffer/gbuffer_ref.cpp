@@ -21,6 +21,7 @@ std::vector<PixelRef> gbuffer_ref(const scenes::Scene& scene, const scenes::Tria
             pixel.surface.emission = dvec3(scene.background);
             if (!hit) continue;
             pixel.surface = face_towards_ref(surface_ref(scene, triangles, hit.triangle, hit.u, hit.v), direction);
+            pixel.direction = direction;
             pixel.depth = hit.t * glm::dot(direction, -dvec3(to_world[2]));
         }
     return pixels;

@@ -14,19 +14,27 @@ protected:
     struct Pixels {
         std::vector<vec4> positions, albedo, emitted;
         std::vector<uvec2> normals;
+        std::vector<Gloss> gloss;
     };
     Pixels run(const TestScene& test, uint32_t width, uint32_t height) {
         const UploadedScene scene(device, test);
-        GBufferPass pass(device, width, height, scene.bvh.constants());
+        GBufferPass pass(device, width, height, scene.bvh.constants(), true);
         engine::Recorder recorder(device);
         pass.record(recorder, scene.geometry, scene.bvh, test.scene.cameras[0], test.scene.background);
         recorder.submit_and_wait();
         EXPECT_EQ(engine::download(device, pass.exhausted())[0], 0u);
         const GBuffer& g = pass.gbuffer();
         return {engine::download(device, g.positions), engine::download(device, g.albedo), engine::download(device, g.emitted),
-                engine::download(device, g.normals)};
+                engine::download(device, g.normals), engine::download(device, g.gloss)};
     }
 
+    static bool another_gloss(const PixelRef& e, const Gloss& got) {
+        const GlossRef& gloss = e.surface.gloss;
+        if (is_matte(got) || gloss.roughness == 0) return !is_matte(got) || gloss.roughness != 0;
+        const Lobe lobe = lobe_of(got, vec3(0, 0, 1));
+        return !(length(gloss.f0 - dvec3(lobe.f0)) <= 2e-4 && std::abs(std::pow(gloss.roughness, 4) - lobe.alpha2) <= 3e-4 &&
+                 length(dvec3(lobe.view) + e.direction) <= 2e-4);
+    }
     // How many pixels differ from the twin's by more than rounding. Rays along edges may: they meet another triangle.
     static size_t differing(const TestScene& test, const Pixels& got, uint32_t width, uint32_t height, double scale) {
         const auto expected = gbuffer_ref(test.scene, test.triangles, test.scene.cameras[0], width, height);
@@ -40,9 +48,10 @@ protected:
                       !(std::abs(e.depth - double(got.positions[i].w)) <= 3e-6 * scale) ||
                       far(e.surface.shading_normal, dvec3(unpack_direction(got.normals[i].x)), 2e-4) ||
                       far(e.surface.geometric_normal, dvec3(unpack_direction(got.normals[i].y)), 2e-4) ||
-                      far(e.surface.albedo, dvec3(got.albedo[i]), 1e-4) || far(e.surface.emission, dvec3(got.emitted[i]), 1e-4);
+                      far(e.surface.albedo, dvec3(got.albedo[i]), 1e-4) || far(e.surface.emission, dvec3(got.emitted[i]), 1e-4) ||
+                      another_gloss(e, got.gloss[i]);
             else
-                bad = bad || got.positions[i] != vec4(0) || got.normals[i] != uvec2(0) || got.albedo[i] != vec4(0) || got.emitted[i] != vec4(test.scene.background, 0);
+                bad = bad || !is_matte(got.gloss[i]) || got.positions[i] != vec4(0) || got.normals[i] != uvec2(0) || got.albedo[i] != vec4(0) || got.emitted[i] != vec4(test.scene.background, 0);
             wrong += bad;
         }
         return wrong;
@@ -108,6 +117,7 @@ TEST_F(GBufferTest, equals_the_twin_with_all_that_glTF_says_of_a_surface) {
         const auto vertices = [&](const char* what, auto change) {
             changes(what, [&](auto& of) { if constexpr (std::is_same_v<std::decay_t<decltype(of)>, scenes::Triangles>) change(of); });
         };
+        material("roughness", [](scenes::Material& m) { m.roughness *= 0.8f; });
         material("alpha", [](scenes::Material& m) { m.alpha = Alpha::opaque; });
         material("cutoff", [](scenes::Material& m) { m.alpha_cutoff = 0.3f; });
         material("unlit", [](scenes::Material& m) { m.unlit = false; });

@@ -15,16 +15,19 @@ void main() {
         push.normals.at[pixel] = uvec2(0u);
         push.albedo.at[pixel] = vec4(0.0);
         push.emitted.at[pixel] = vec4(push.background, 0.0);
+        if (push.has_gloss != 0u) push.gloss.at[pixel] = Gloss(0u, 0u, 0u);
         return;
     }
     Surface s = surface_at(push.geometry, hit.triangle, hit.u, hit.v);
     // The direction from the point itself, which is more exact than the ray's where the eye is close; the eye on the
     // surface has none and takes the camera's.
     const vec3 seen = s.position - push.eye;
-    s = face_towards(s, unit_or(seen, push.forward));
+    const vec3 direction = unit_or(seen, push.forward);
+    s = face_towards(s, direction);
     // Never 0, which would say that nothing is here.
     push.positions.at[pixel] = vec4(s.position, max(dot(seen, push.forward), 1e-30));
     push.normals.at[pixel] = uvec2(pack_direction(s.shading_normal), pack_direction(s.geometric_normal));
     push.albedo.at[pixel] = vec4(s.albedo, s.reach);
     push.emitted.at[pixel] = vec4(s.emission, 0.0);
+    if (push.has_gloss != 0u) push.gloss.at[pixel] = pack_gloss(s.f0, s.roughness, -direction);
 }

@@ -63,6 +63,7 @@ Material material(const scenes::Material& m, TexturePacker& pack, const std::vec
     const bool shines = !m.unlit && m.emissive != vec3(0);
     Material out{.base_color = vec3(m.base_color),
                  .metallic = m.metallic,
+                 .roughness = m.roughness,
                  .emission = m.unlit ? vec3(0) : m.emissive,
                  .normal_scale = m.normal_scale,
                  .flags = (m.double_sided ? material_double_sided : 0) | (m.unlit ? material_unlit : 0),
@@ -73,6 +74,11 @@ Material material(const scenes::Material& m, TexturePacker& pack, const std::vec
     for (uint index : {out.base_color_texture, out.metallic_texture, out.emission_texture, out.normal_texture})
         if (index != no_texture && texture_set(textures[index]) == 0) out.flags |= material_on_set0;
     return out;
+}
+
+// Whether some point of it may not be matte: textures only ever lessen roughness.
+bool glossy(const scenes::Material& m) {
+    return !m.unlit && (brdf_roughness(m.metallic, m.roughness) > 0 || m.metallic_roughness_texture.texture != scenes::none);
 }
 
 OpacityMaterial alpha(const scenes::Material& m, TexturePacker& pack) {
@@ -114,6 +120,7 @@ GeometryData geometry_data(const scenes::Scene& scene, const scenes::Triangles& 
         data.materials.push_back(material(m, pack, data.textures));
         data.alphas.push_back(alpha(m, pack));
         data.bends = data.bends || data.materials.back().normal_texture != no_texture;
+        data.glossy = data.glossy || glossy(m);
     }
     data.world = world_triangles(triangles);
     data.world.opacity = {triangles.triangles, triangles.texcoords, triangles.texcoords1, triangles.colors, data.alphas, data.texels};

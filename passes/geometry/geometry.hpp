@@ -25,6 +25,7 @@ struct GeometryData {
     std::vector<uint> texels;             // empty when no material refers to a texture
     bool on_set[2] = {false, false};      // some material needs these texture coordinates
     bool bends = false;                   // some material has a normal texture
+    bool glossy = false;                  // some material is not matte (passes/brdf)
 };
 GeometryData geometry_data(const scenes::Scene& scene, const scenes::Triangles& triangles);
 

@@ -4,6 +4,7 @@
 
 #include "compute/instances/instances.h"
 #include "compute/raytrace/raytrace_io.h"
+#include "passes/brdf/brdf.h"
 
 MYRIAD_BEGIN
 const uint no_texture = 0xffffffffu;
@@ -11,11 +12,10 @@ const uint material_on_set0 = 1u;      // some texture of it is on set 0 of the 
 const uint material_double_sided = 2u;
 const uint material_unlit = 4u;
 
-// Diffuse only: what scenes::Material says of roughness, and the specular lobe, are not read yet. Alpha is in OpacityMaterial.
-// Textures are elements of GeometryArrays::textures, read only where there are any.
+// Alpha is in OpacityMaterial. Textures are elements of GeometryArrays::textures, read only where there are any.
 struct Material {
     vec3 base_color;
-    float metallic;
+    float metallic, roughness;
     vec3 emission;       // radiance
     float normal_scale;
     uint flags;
@@ -52,6 +52,8 @@ struct Surface {
     vec3 geometric_normal;  // unit, on the side from which the corners go counter-clockwise
     vec3 shading_normal;    // unit, on the same side
     vec3 albedo;            // diffuse: base colour * (1 - metallic); 0 where unlit
+    vec3 f0;                // of the glossy lobe, straight on
+    float roughness;        // of the glossy lobe; 0: there is none to speak of (passes/brdf)
     vec3 emission;          // radiance, from the front; from both sides where double-sided. Unlit: the base colour, for the eye only
     bool double_sided;      // or unlit
     float reach;            // of the triangle, for ray_origin
@@ -101,7 +103,7 @@ MYRIAD_FN vec3 bent_normal(vec3 normal, vec4 tangent, vec3 texel, float scale) {
 MYRIAD_END
 
 #ifdef __cplusplus
-static_assert(sizeof(myriad::Material) == 52 && sizeof(myriad::GeometryArrays) == 96 && sizeof(myriad::GeometryRef) == 8);
+static_assert(sizeof(myriad::Material) == 56 && sizeof(myriad::GeometryArrays) == 96 && sizeof(myriad::GeometryRef) == 8);
 #endif
 
 #endif

@@ -122,7 +122,11 @@ SurfaceRef surface_ref(const scenes::Scene& scene, const scenes::Triangles& tria
     s.shading_normal = m.normal_texture.texture == scenes::none || m.unlit ? normal : bent(at, m, normal);
     if (glm::dot(normal, s.geometric_normal) < 0) s.shading_normal = -s.shading_normal;
     const dvec3 color = dvec3(m.base_color) * dvec3(at.color()) * dvec3(at.texel(m.base_color_texture, true));
-    s.albedo = m.unlit ? dvec3(0) : color * (1 - m.metallic * at.texel(m.metallic_roughness_texture, false).z);
+    const glm::dvec4 texel = at.texel(m.metallic_roughness_texture, false);
+    const double metallic = m.metallic * texel.z, roughness = m.roughness * texel.y;
+    s.albedo = m.unlit ? dvec3(0) : color * (1 - metallic);
+    const bool matte = m.unlit || (metallic == 0 && roughness >= double(0.9f));
+    if (!matte) s.gloss = {glm::mix(dvec3(0.04), color, metallic), std::max(roughness, 0.045)};
     s.emission = m.unlit ? color : dvec3(m.emissive) * dvec3(at.texel(m.emissive_texture, true));
     s.double_sided = m.double_sided || m.unlit;
     return s;

@@ -3,11 +3,13 @@
 #include <functional>
 #include <limits>
 #include "compute/opacity/opacity_io.h"
+#include "passes/brdf/brdf_ref.hpp"
 #include "scenes/scene.hpp"
 namespace myriad::passes {
 
 struct SurfaceRef {
     glm::dvec3 position{0}, geometric_normal{0}, shading_normal{0}, albedo{0}, emission{0};
+    GlossRef gloss;
     bool double_sided = false;
 };
 // A filtered texel, decoded if it is a colour; alpha never is.

@@ -78,7 +78,7 @@ TEST(Geometry, textures_are_packed_once_and_only_when_used) {
 }
 
 TEST(Geometry, a_surface_turns_to_the_ray) {
-    Surface s{vec3(0), {0, 0, 1}, glm::normalize(vec3(0.9f, 0, 0.3f)), vec3(1), vec3(2), false, 1};
+    Surface s{vec3(0), {0, 0, 1}, glm::normalize(vec3(0.9f, 0, 0.3f)), vec3(1), vec3(0.04f), 0, vec3(2), false, 1};
     EXPECT_EQ(face_towards(s, {0, 0, -1}).emission, vec3(2));
     EXPECT_EQ(face_towards(s, {0, 0, -1}).geometric_normal, vec3(0, 0, 1));
     EXPECT_EQ(face_towards(s, {0, 0, 1}).emission, vec3(0));

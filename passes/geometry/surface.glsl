@@ -115,9 +115,15 @@ Surface surface_at(GeometryRef geometry, uint triangle, float u, float v) {
     s.double_sided = (material.flags & (material_double_sided | material_unlit)) != 0u;
     if ((material.flags & material_unlit) != 0u) {
         s.albedo = vec3(0.0);
+        s.f0 = vec3(0.0);
+        s.roughness = 0.0;
         s.emission = color;
     } else {
-        s.albedo = color * (1.0 - material.metallic * texture_rgb(g, material.metallic_texture, at, false).b);
+        const vec3 texel = texture_rgb(g, material.metallic_texture, at, false);
+        const float metallic = material.metallic * texel.b;
+        s.albedo = color * (1.0 - metallic);
+        s.f0 = brdf_f0(color, metallic);
+        s.roughness = brdf_roughness(metallic, material.roughness * texel.g);
         s.emission = material.emission;
         if (any(greaterThan(s.emission, vec3(0.0)))) s.emission *= texture_rgb(g, material.emission_texture, at, true);
     }
