@@ -31,7 +31,7 @@ BshLeaves bsh_leaves(const WorldTriangles& world, uint32_t log2_samples, uint32_
 // How tightly a tree holds its leaves, to be compared with the same tree's when it was built.
 struct BshQuality {
     double overlap = 0;  // the mean over inner nodes of their children's volumes over their own
-    double extent = 0;   // the sum of squares of inner nodes' radii, m^2: cuts open nodes in proportion to what they cover of a view
+    double extent = 0;   // the sum of squares of inner nodes' radii, m^2: large nodes count most, so it grows before cuts do
 };
 
 class Bsh {
