@@ -21,6 +21,7 @@ if [[ ${MYRIAD_QUICK:-} != 1 ]]; then
   [[ $sanitised -eq 0 ]] || echo "test: the sanitised tests failed (above); now the others" >&2
 fi
 
-# The preset turns the validation layers on, and runs one test at a time because a CPU device takes all cores.
+# The preset turns the validation layers on, and runs two tests at a time: a CPU device takes all cores, but much of a test is a driver that
+# compiles on one.
 ctest --preset validation "$@"
 exit "$sanitised"
