@@ -94,8 +94,10 @@ protected:
     }
 
     TempFolder inputs, folder;
-    const std::string exr = folder / "a.exr", png = folder / "a.png", glb = folder / "a.glb";
-    const Arguments render = tiny + Arguments{"-o", exr, "--png", png, "--stats", folder / "s.json"};
+    // Names so long that those of temporaries, which end in the process's number, are on the heap however many digits it has: allocations
+    // are counted, and the count of one run is used in another.
+    const std::string exr = folder / "picture.exr", png = folder / "picture.png", glb = folder / "picture.glb";
+    const Arguments render = tiny + Arguments{"-o", exr, "--png", png, "--stats", folder / "statistics.json"};
     const Arguments compare = {"compare", inputs / "a.exr", inputs / "b.exr", "--diff", png};
     const Arguments convert = {"convert", "builtin:cornell?cells=1", glb, "-q"};
 };
@@ -144,7 +146,7 @@ TEST_F(faults, address_space) {
         waitpid(child, &status, 0);
         EXPECT_EQ(status_of(status), 0) << mib << " MiB";
         const std::vector<std::string> names = folder.names();
-        EXPECT_EQ(names, std::vector<std::string>{"a.png"}) << mib << " MiB";
+        EXPECT_EQ(names, std::vector<std::string>{"picture.png"}) << mib << " MiB";
     }
 }
 
@@ -186,7 +188,7 @@ TEST_F(faults, each_call_of_an_output) {
                 const std::string fault = std::string(call) + ":" + std::to_string(n) + ":" + std::to_string(error);
                 const Outcome o = run(compare, fault);
                 const std::string now = bytes_of(png);
-                EXPECT_EQ(folder.names(), Arguments{"a.png"}) << fault;
+                EXPECT_EQ(folder.names(), Arguments{"picture.png"}) << fault;
                 if (o.status == 0) {  // what may fail without harm comes after the file's own call: making the rename durable
                     EXPECT_TRUE(now == whole && n > 1) << fault;
                     continue;
@@ -270,8 +272,8 @@ TEST_F(faults, ended_at_each_call_of_an_output) {
                 const std::string now = bytes_of(png);
                 EXPECT_TRUE(now == "old" || now == whole) << fault;
                 for (const std::string& name : folder.names()) {
-                    const bool temporary = name.starts_with(".a.png.tmp-");  // nobody can clean up after SIGKILL
-                    EXPECT_TRUE(name == "a.png" || (killed && temporary)) << fault << ": " << name;
+                    const bool temporary = name.starts_with(".picture.png.tmp-");  // nobody can clean up after SIGKILL
+                    EXPECT_TRUE(name == "picture.png" || (killed && temporary)) << fault << ": " << name;
                     if (temporary) std::filesystem::remove(folder / name);
                 }
             }
@@ -314,7 +316,7 @@ TEST_F(faults, a_reader_that_goes_away) {  // myriad info | head -1
     int status = 0;
     waitpid(child, &status, 0);
     EXPECT_EQ(status_of(status), 0);
-    EXPECT_EQ(folder.names(), Arguments{"a.png"});
+    EXPECT_EQ(folder.names(), Arguments{"picture.png"});
 }
 
 }  // namespace
