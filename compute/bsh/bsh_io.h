@@ -48,6 +48,10 @@ MYRIAD_FN uint bsh_height(uint slot, uint leaves, uint blocks) {
 MYRIAD_FN uint bsh_block_of(uint slot, uint leaves, uint blocks) {
     return slot == 8u * blocks ? blocks - 1u : slot - leaves;
 }
+// And the inner node that owns a block, its inverse. The block over the root has no owner.
+MYRIAD_FN uint bsh_owner_of(uint block, uint leaves, uint blocks) {
+    return block + 1u == blocks ? 8u * blocks : block + leaves;
+}
 MYRIAD_FN bool bsh_is_absent(uvec2 code) { return (code.y >> 16) == bsh_absent; }
 
 MYRIAD_FN Sphere bsh_decode(vec4 frame, uvec2 code) {

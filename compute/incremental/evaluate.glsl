@@ -27,7 +27,7 @@ Evaluation evaluate(uint block, View view) {
     Evaluation e = Evaluation(0u, true, 1e30f, 0.0f);
     const uint height = bsh_height(8u * block, push.leaves, push.blocks);
     if (block != push.blocks) {  // the owner, which sits in the block above
-        const uint owner = block + 1u == push.blocks ? 8u * push.blocks : block + push.leaves;
+        const uint owner = bsh_owner_of(block, push.leaves, push.blocks);
         const Sphere s = bsh_decode(push.frames.at[owner >> 3], push.spheres.at[owner]);
         const uint where = classify(view, s, height + 1u, push.epsilon, push.map_size);
         look(e, view, s.center - view.position, s.radius, height + 1u, where);
@@ -41,7 +41,7 @@ Evaluation evaluate(uint block, View view) {
         const Sphere s = bsh_decode(frame, code);
         const uint where = classify(view, s, height, push.epsilon, push.map_size);
         look(e, view, s.center - view.position, s.radius, height, where);
-        e.found |= (where == node_view_drawn ? 0x1u : where == node_view_culled ? 0x100u : 0x10000u) << i;
+        e.found |= node_view_bit(where) << i;
     }
     return e;
 }

@@ -43,7 +43,12 @@ Ref<CarriedRefs> CarriedCut::memory(engine::Recorder& recorder) {
 
 void CarriedCut::record(engine::Recorder& recorder, const ManyLodsInputs& in, const CarrySettings& settings) {
     assert(in.first_view == first_view_ && in.limit == views_ && first_view_ + views_ <= cut_max_views && in.tree.blocks() < cut_max_blocks);
-    if (in.tree.empty()) return lists_.begin(recorder, due_kernel_, in.view_count, 0, 0), lists_.end(recorder);
+    if (in.tree.empty()) {
+        lists_.begin(recorder, due_kernel_, in.view_count, 0, 0);
+        lists_.end(recorder);
+        recorder.fill(report_, 0);
+        return;
+    }
     const auto travel = [&] {
         return TravelPush{.views = recorder.read(in.views), .count = recorder.read(in.view_count), .memory = memory(recorder),
                           .first_view = first_view_, .limit = views_, .over_root = in.tree.blocks()};

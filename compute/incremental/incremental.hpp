@@ -8,7 +8,7 @@ namespace myriad::compute {
 
 // What a frame did to a carried cut; read after the submission.
 struct CarryReport {
-    AppendReport lists;                    // `processed` counts node-views evaluated, `kept` is the length of the list
+    AppendReport lists;                    // `processed` counts node-views evaluated, nine an item, `kept` is the length of the list
     uint64_t cut = 0;                      // node-views in the cuts, culled ones included
     uint64_t due = 0, dropped = 0, made = 0, holes = 0;  // items
     uint64_t invalid = 0;                  // node-views of the cut that should be open (lazy)
@@ -29,7 +29,8 @@ public:
     // Forgets the cut: the next frame starts from the roots, and is not lazy. For a tree that was built anew.
     void restart() { started_ = false; }
 
-    // Brings the cut up to date. `in` names the same tree, range of views, epsilon and map size in every frame.
+    // Brings the cut up to date. `in` names the same tree, range of views, epsilon and map size in every frame. After a frame whose lists
+    // are not ok() the cut is void: it takes a longer list.
     void record(engine::Recorder& recorder, const ManyLodsInputs& in, const CarrySettings& settings);
 
     // The cut for those who draw it: its kept list holds the groups, and holes that draw nothing.

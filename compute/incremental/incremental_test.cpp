@@ -204,6 +204,14 @@ TEST_F(IncrementalTest, what_rests_costs_no_evaluation) {
     one[7].position += 0.3f;
     const CarryReport some = run(cut, one, 30, {}, 1, 32).report;
     EXPECT_TRUE(some.due > 0 && some.due < some.items() / 10) << some.due << " of " << some.items();
+    // One that went to nothing and came back has its slack again.
+    std::vector<View> gone = one;
+    gone[7] = {vec3(1e15f, 0, 0), 0, vec3(1, 0, 0), 1};
+    run(cut, gone, 30, {}, 1, 32);
+    run(cut, one, 30, {}, 1, 32);
+    one[7].position += 1e-5f;
+    const CarryReport back = run(cut, one, 30, {}, 1, 32).report;
+    EXPECT_LT(back.due, some.due / 4);
     const CarryReport all = run(cut, one, 30, {.everything = true}, 1, 32).report;
     EXPECT_EQ(all.due, all.items()) << "the paper's way";
     EXPECT_EQ(all.made + all.dropped, 0u);
@@ -237,7 +245,8 @@ TEST_F(IncrementalTest, trees_and_view_counts_at_boundaries) {
     positions.clear(), triangles.clear();
     soup(0, 9);
     CarriedCut cut(device, AppendMode::scan, 64, 0, 5);
-    EXPECT_EQ(run(cut, random_views(5), 5, {}, 1, 32).report.lists.kept, 0u);
+    const CarryReport empty = run(cut, random_views(5), 5, {}, 1, 32).report;
+    EXPECT_EQ(empty.lists.kept + empty.cut + empty.invalid, 0u);
 }
 
 // Hard cases of the spec: sizes, distances, coincidence, thresholds met exactly.
@@ -302,6 +311,17 @@ TEST_F(IncrementalTest, a_list_that_is_too_short_says_so_and_a_longer_one_has_th
             capacity = std::max({capacity + 1, frame.report.lists.next_needed, frame.report.lists.kept_needed});
         }
         EXPECT_GT(redone, 0);
+        // One place too few, and just enough; and a list that the first views fit, but not all.
+        CarriedCut ample(device, mode, 1 << 14, 0, 20);
+        const uint64_t items = run(ample, views, 20, {}, 1, 32).report.lists.kept;
+        CarriedCut tight(device, mode, items - 1, 0, 20), enough(device, mode, items, 0, 20);
+        const AppendReport overflow = run(tight, views, 20, {}, 1, 32).report.lists;
+        EXPECT_TRUE(overflow.kept_overflowed && overflow.kept_needed == items);
+        EXPECT_TRUE(run(enough, {views.begin(), views.begin() + 2}, 20, {}, 1, 32).report.lists.ok());
+        EXPECT_TRUE(same(expected, cut_of(run(enough, views, 20, {}, 1, 32), 20)));
+        CarriedCut later(device, mode, items - 1, 0, 20);
+        EXPECT_TRUE(run(later, {views.begin(), views.begin() + 2}, 20, {}, 1, 32).report.lists.ok());
+        EXPECT_FALSE(run(later, views, 20, {}, 1, 32).report.lists.ok());
     }
 }
 

@@ -38,5 +38,5 @@ void main() {
         memory.dues.at[place] = due;
     }
     for (uint next = at.x; open != 0u; ++next, open &= open - 1u)
-        append_next(next, uvec2(8u * pair.x + findLSB(open) - push.leaves, pair.y), push.lists);
+        append_next(next, uvec2(bsh_block_of(8u * pair.x + findLSB(open), push.leaves, push.blocks), pair.y), push.lists);
 }

@@ -20,14 +20,14 @@ MYRIAD_BEGIN
 const float slack_rounding = 1.0f / 262144.0f;
 
 struct Due {
-    float at;      // -infinity: at once, moved or not
+    float at;      // negative: at once, moved or not
     float reach;
 };
 MYRIAD_ARRAY(Dues, Due, 8)
 
 const uint travel_exists = 1u;
 const uint travel_moved = 2u;   // this frame
-const uint travel_jumped = 4u;  // this frame, in a way that no slack covers: it came, went, or has another frustum
+const uint travel_jumped = 4u;  // this frame, in a way that no slack covers: it came, went, has another frustum, or went or turned so far that little is left
 struct Travel {
     float moved;
     float turned;
@@ -43,8 +43,10 @@ MYRIAD_FN Travel travel_on(Travel t, View before, bool existed, View now, bool e
     const float moved = sqrt(dot(dp, dp));
     const float turned = sqrt(dot(dn, dn));
     t.flags = exists ? travel_exists : 0u;
-    if (exists != existed || now.cos_phi != before.cos_phi || now.sin_phi != before.sin_phi || !(moved + turned < 1e18f)) {
+    if (exists != existed || now.cos_phi != before.cos_phi || now.sin_phi != before.sin_phi || !(moved < 1e12f && turned < 0.5f)) {
         t.flags |= travel_jumped;
+        t.moved = 0.0f;  // every item of the view is evaluated now, so sums can begin anew, and stay fine
+        t.turned = 0.0f;
         return t;
     }
     if (now.position == before.position && now.direction == before.direction) return t;

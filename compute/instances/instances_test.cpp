@@ -4,10 +4,8 @@
 
 #include "compute/bsh/bsh_ref.hpp"
 #include "compute/instances/world.hpp"
-#include "compute/raytrace/ray_query.hpp"
-#include "compute/raytrace/raytrace_ref.hpp"
+#include "compute/raytrace/raytrace_testing.hpp"
 #include "compute/surface_sampling/surface_sampling.hpp"
-#include "engine/testing.hpp"
 
 namespace myriad::compute {
 namespace {
@@ -58,14 +56,8 @@ struct Flat {
     WorldTriangles world() const { return {positions, triangles}; }
 };
 
-class InstancesTest : public engine::DeviceTest {
+class InstancesTest : public RaytraceTest {
 protected:
-    float uniform(float lo = 0, float hi = 1) { return std::uniform_real_distribution<float>(lo, hi)(random); }
-    vec3 in_cube(float r = 1) { return {uniform(-r, r), uniform(-r, r), uniform(-r, r)}; }
-    vec3 direction() {
-        for (;;)
-            if (const vec3 d = in_cube(); dot(d, d) > 0.01f && dot(d, d) < 1) return normalize(d);
-    }
     // Rotated, scaled by an axis each, mirrored now and then; sheared too.
     glm::mat3 transform(float size = 1, float distortion = 4, float shear = 0) {
         const vec3 x = direction(), y = normalize(cross(x, direction())), z = cross(x, y);
@@ -99,17 +91,7 @@ protected:
     };
     Answers ask(engine::Device& on, const WorldTriangles& world, const std::vector<Ray>& rays) {
         const Bvh bvh(on, world);
-        RayQuery query(on, bvh);
-        const auto list = engine::upload(on, "test", "rays", rays);
-        const auto status = engine::upload(on, "test", "status", std::vector<uint>{0});
-        engine::Array<RayHitRecord> hits(on, "test", "hits", rays.size());
-        engine::Array<uint> occluded(on, "test", "occluded", rays.size());
-        engine::Recorder recorder(on);
-        query.closest(recorder, bvh, list, hits, status);
-        query.occluded(recorder, bvh, list, occluded, status);
-        recorder.submit_and_wait();
-        EXPECT_EQ(engine::download(on, status)[0], 0u);
-        return {engine::download(on, hits), engine::download(on, occluded)};
+        return {closest(on, bvh, rays), RaytraceTest::occluded(on, bvh, rays)};
     }
 
     // Returns how many rays hit something.

@@ -42,11 +42,13 @@ MYRIAD_FN uint classify(View view, Sphere sphere, uint height, float epsilon, ui
     return height == 0u || fits(d, sphere.radius, map_size, epsilon) ? node_view_drawn : node_view_open;
 }
 
-// The children of one block in one view: drawn | culled << 8 | open << 16, a bit a slot.
+// Of eight children in one word: drawn | culled << 8 | open << 16, a bit a slot; this is slot 0's.
+MYRIAD_FN uint node_view_bit(uint where) {
+    return where == node_view_drawn ? 0x1u : where == node_view_culled ? 0x100u : 0x10000u;
+}
 MYRIAD_FN uint classify_child(View view, vec4 frame, uvec2 code, uint height, float epsilon, uint map_size) {
     if (bsh_is_absent(code)) return 0u;
-    const uint where = classify(view, bsh_decode(frame, code), height, epsilon, map_size);
-    return where == node_view_drawn ? 0x1u : where == node_view_culled ? 0x100u : 0x10000u;
+    return node_view_bit(classify(view, bsh_decode(frame, code), height, epsilon, map_size));
 }
 MYRIAD_END
 

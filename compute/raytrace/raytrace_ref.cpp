@@ -63,12 +63,11 @@ BvhBox refit_node(BvhData& tree, uint index) {
         }
         box = {vec3(INFINITY), vec3(-INFINITY)};
         for (uint k = first; k < first + triangles; ++k) {
-            const BvhBox own = bvh_box(tree.triangles[k]);
-            box = {glm::min(box.lo, own.lo), glm::max(box.hi, own.hi)};
+            box = bvh_united(box, bvh_box(tree.triangles[k]));
         }
     }
     BvhBox all{vec3(INFINITY), vec3(-INFINITY)};
-    for (uint i = 0; i < count; ++i) all = {glm::min(all.lo, children.box[i].lo), glm::max(all.hi, children.box[i].hi)};
+    for (uint i = 0; i < count; ++i) all = bvh_united(all, children.box[i]);
     if (count > 0) node = bvh_pack(node, children, count);
     return all;
 }
@@ -129,7 +128,7 @@ std::string bvh_check(const BvhData& tree) {
     for (uint k = 0; k < check.seen.size(); ++k)
         if (check.seen[k] != 1) return "triangle " + std::to_string(k) + " of the tree is in " + std::to_string(check.seen[k]) + " leaves";
     for (uint i = 0; i < check.visited.size(); ++i)
-        if (check.visited[i] == 0) return "node " + std::to_string(i) + " is not reached";
+        if (check.visited[i] != 1) return "node " + std::to_string(i) + " is reached " + std::to_string(check.visited[i]) + " times";
     return {};
 }
 

@@ -25,7 +25,7 @@ struct ExactHit {
 };
 ExactHit closest_exact(std::span<const glm::vec3> positions, std::span<const glm::uvec4> triangles, const Ray& ray);
 
-// The tree after its triangles have moved to `positions`, as Bvh::refit leaves it: all nodes anew, from the root down.
+// The tree of a scene without instances after its triangles have moved to `positions`, as Bvh::refit leaves it: all nodes anew, from the root down.
 BvhData refit_ref(BvhData tree, const WorldTriangles& world, std::span<const glm::vec3> positions);
 
 // The first violated invariant of a tree, or nothing: each of its triangles in one leaf, strictly within the box of each ancestor, each node

@@ -69,27 +69,28 @@ protected:
         return rays;
     }
 
-    std::vector<RayHitRecord> closest(engine::Device& on, const Bvh& bvh, const std::vector<Ray>& rays) {
+    // record(query, recorder, rays, answers, status) asks.
+    template <class T, class Record>
+    std::vector<T> answers(engine::Device& on, const Bvh& bvh, const std::vector<Ray>& rays, Record record) {
         RayQuery query(on, bvh);
-        auto list = engine::upload(on, "test", "rays", rays);
-        auto status = engine::upload(on, "test", "status", std::vector<uint>{0});
-        engine::Array<RayHitRecord> hits(on, "test", "hits", rays.size());
+        const auto list = engine::upload(on, "test", "rays", rays);
+        const auto status = engine::upload(on, "test", "status", std::vector<uint>{0});
+        engine::Array<T> result(on, "test", "answers", rays.size());
         engine::Recorder recorder(on);
-        query.closest(recorder, bvh, list, hits, status);
-        recorder.submit_and_wait();
-        EXPECT_EQ(engine::download(on, status)[0], 0u);
-        return engine::download(on, hits);
-    }
-    std::vector<uint> occluded(engine::Device& on, const Bvh& bvh, const std::vector<Ray>& rays) {
-        RayQuery query(on, bvh);
-        auto list = engine::upload(on, "test", "rays", rays);
-        auto status = engine::upload(on, "test", "status", std::vector<uint>{0});
-        engine::Array<uint> result(on, "test", "occluded", rays.size());
-        engine::Recorder recorder(on);
-        query.occluded(recorder, bvh, list, result, status);
+        record(query, recorder, list, result, status);
         recorder.submit_and_wait();
         EXPECT_EQ(engine::download(on, status)[0], 0u);
         return engine::download(on, result);
+    }
+    std::vector<RayHitRecord> closest(engine::Device& on, const Bvh& bvh, const std::vector<Ray>& rays) {
+        return answers<RayHitRecord>(on, bvh, rays, [&](RayQuery& query, auto& recorder, auto& list, auto& result, auto& status) {
+            query.closest(recorder, bvh, list, result, status);
+        });
+    }
+    std::vector<uint> occluded(engine::Device& on, const Bvh& bvh, const std::vector<Ray>& rays) {
+        return answers<uint>(on, bvh, rays, [&](RayQuery& query, auto& recorder, auto& list, auto& result, auto& status) {
+            query.occluded(recorder, bvh, list, result, status);
+        });
     }
     std::vector<RayHitRecord> closest(const Mesh& m, const std::vector<Ray>& rays) { return closest(device, Bvh(device, m.world()), rays); }
     std::vector<uint> occluded(const Mesh& m, const std::vector<Ray>& rays) { return occluded(device, Bvh(device, m.world()), rays); }

@@ -184,11 +184,18 @@ TEST_F(RefitTest, the_checker_sees_what_is_outside) {
         wrong.triangles[k].p1.x += 0.5f;
         EXPECT_NE(bvh_check(wrong), "") << "a triangle moved, its boxes did not";
     }
-    BvhData lost = tree, twice = tree;
+    BvhData lost = tree, twice = tree, shallow = tree, empty = tree;
     lost.nodes.push_back({});
     EXPECT_NE(bvh_check(lost), "");
-    twice.nodes[0].child[0] = {};
-    EXPECT_NE(bvh_check(twice), "");
+    empty.nodes[0].child[0] = {};
+    EXPECT_NE(bvh_check(empty), "");
+    shallow.depth -= 1;
+    EXPECT_NE(bvh_check(shallow), "");
+    const auto leaf = [](const BvhNode& node, uint i) { return bvh_children(node.frame) > i && node.child[i].x >> 24 > 0; };
+    const auto two = std::ranges::find_if(twice.nodes, [&](const BvhNode& node) { return leaf(node, 0) && leaf(node, 1); });
+    ASSERT_NE(two, twice.nodes.end());
+    two->child[1] = two->child[0];
+    EXPECT_NE(bvh_check(twice).find("leaves"), std::string::npos) << "the second child's triangles are in none, the first's in two";
 }
 
 }  // namespace

@@ -53,10 +53,10 @@ MYRIAD_FN float texel_angle(vec2 uv, uint size) {
 // c(N, V) of the spec: the diameter, in texels, of the disc that a sphere projects to, in the half where its centre lies;
 // infinite when the centre of projection is inside the sphere or on it.
 MYRIAD_FN float criterion(vec3 d, float r, uint size) {
-    const float l2 = dot(d, d);
-    const float tangent2 = l2 - r * r;
+    MYRIAD_PRECISE const float tangent2 = d.x * d.x + d.y * d.y + d.z * d.z - r * r;
     if (!(tangent2 > 0.0f)) return uintBitsToFloat(0x7f800000u);
-    return float(size) * r / (abs(d.x) + sqrt(tangent2));
+    MYRIAD_PRECISE const float c = float(size) * r / (abs(d.x) + sqrt(tangent2));
+    return c;
 }
 
 // c < epsilon, as cuts ask it. Where a view is all but inside a sphere (r > 0.968 L) L^2 - r^2 cancels, and the answer is no; elsewhere c is
@@ -65,8 +65,7 @@ MYRIAD_FN float criterion(vec3 d, float r, uint size) {
 MYRIAD_FN bool fits(vec3 d, float r, uint size, float epsilon) {
     MYRIAD_PRECISE const float l2 = d.x * d.x + d.y * d.y + d.z * d.z;
     MYRIAD_PRECISE const float tangent2 = l2 - r * r;
-    MYRIAD_PRECISE const float c = float(size) * r / (abs(d.x) + sqrt(max(tangent2, 0.0f)));
-    return tangent2 > 0.0625f * l2 && c < epsilon;
+    return tangent2 > 0.0625f * l2 && criterion(d, r, size) < epsilon;
 }
 
 // Signed distance of the point d from the view's frustum cone, d relative to its apex; negative inside. (a, b) are its coordinates along
