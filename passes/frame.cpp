@@ -65,7 +65,7 @@ Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::T
       lights_(step("listing lights", [&] { return LightTable(device, scene, triangles, data); })),
       bvh_(step("building the ray tree", [&] { return derived.bvh(device, compute::BvhQuality::quick, geometry_.opacity()); })),
       gbuffer_(device, settings.width, settings.height, bvh_.constants(), settings.brdf == Brdf::gltf && data.glossy), compose_(device, settings.width, settings.height),
-      exhausted_(device, "frame", "exhausted walks", 1), host_words_(device, "frame", "frame words", 6, engine::Location::host) {
+      exhausted_(device, "frame", "exhausted walks", 1), host_words_(device, "frame", "frame words", 7, engine::Location::host) {
     background_ = scene.background;
     const compute::WorldTriangles& world = derived.world();
     const glm::vec3 far = glm::max(glm::abs(triangles.lo), glm::abs(triangles.hi));
@@ -120,8 +120,13 @@ void Frame::refit_tree() {
 }
 
 void Frame::move_to(const scenes::Moment& moment) {
+    const uint32_t before = lights_.moves();
     lights_.move(moment.lights);
-    if (!deform_ || !deform_->differs(moment)) return;
+    if (!deform_) return;
+    if (!deform_->differs(moment)) {
+        if (lights_.moves() != before) lights_.follow(recorder_, geometry_);  // emitters have the areas of second 0 again
+        return;
+    }
     moved_ = true;
     if (tree_ && !tree_->empty() && tree_extent_ == 0) recorder_.submit_and_wait(), take_quality();  // of the tree as it was built
     {
@@ -200,11 +205,11 @@ void Frame::render_once(const scenes::Camera& camera) {
     read_back_words();
     if (vpl_) counters_.vpls = host_words_.span()[0];
     if (maps_) counters_.maps = maps_->take_counters();
-    if (settings_.visibility == Visibility::brute && vpl_) counters_.maps->triangle_views = size_.triangles * *counters_.vpls;
+    if (settings_.visibility == Visibility::brute && vpl_) counters_.maps->triangle_views = size_.triangles * host_words_.span()[6];
 }
 
-// The few words of a frame that the host looks at: the number of VPLs, whether there was room for all, and whether every ray walk came
-// to its end.
+// The few words of a frame that the host looks at: the number of VPLs and of views, whether there was room for all, and whether every ray
+// walk came to its end.
 void Frame::read_back_words() {
     std::fill(host_words_.span().begin(), host_words_.span().end(), 0u);
     auto fetch = [&](const engine::Array<uint>& from, uint64_t to, uint64_t word = 0) {
@@ -212,7 +217,7 @@ void Frame::read_back_words() {
     };
     fetch(gbuffer_.exhausted(), 1);
     if (direct_) fetch(direct_->exhausted(), 2);
-    if (vpl_) fetch(vpl_->count(), 0, 1), fetch(vpl_->count(), 5, 2), fetch(vpl_->exhausted(), 3), fetch(exhausted_, 4);
+    if (vpl_) fetch(vpl_->count(), 0, 1), fetch(vpl_->count(), 5, 2), fetch(vpl_->count(), 6, 0), fetch(vpl_->exhausted(), 3), fetch(exhausted_, 4);
     recorder_.submit_and_wait();
     for (uint exhausted : host_words_.span().subspan(1, 4))
         if (exhausted)

@@ -5,6 +5,8 @@
 #include "compute/common/packing.h"
 
 MYRIAD_BEGIN
+const float pi = 3.14159265f;
+
 const float brdf_dielectric = 0.04f;  // reflectance of a dielectric seen straight on: an index of refraction of 1.5
 // No lobe is narrower: alpha = roughness^2 = 0.002, the tangent of its half-width, is the angle of a pixel (0.8 rad over 360 rows);
 // narrower highlights of point lights would fall between pixels, and normals are kept to 4e-5 rad only.
@@ -117,7 +119,7 @@ MYRIAD_FN Reflectance reflectance_of(Lobe lobe, vec3 n, vec3 l, float widen) {
     const vec3 across = cross(n, sum);
     const float along = dot(n, sum);
     const float width = max((a2 * along * along + dot(across, across)) / squared, a2);
-    const float distribution = a2 / (3.14159265f * width * width);
+    const float distribution = a2 / (pi * width * width);
     // Smith's masking of both ways, correlated by height (Heitz 2014), over 4 cos cos.
     const float visible = 0.5f / (cos_light * sqrt(lobe.cos_view * lobe.cos_view * (1.0f - a2) + a2) +
                                   lobe.cos_view * sqrt(cos_light * cos_light * (1.0f - a2) + a2));

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "compute/raytrace/ray_query.hpp"
+#include "compute/views/view_testing.hpp"
 #include "engine/testing.hpp"
 #include "passes/brute/brute_ref.hpp"
 #include "passes/geometry/test_scene.hpp"
@@ -11,23 +12,13 @@
 namespace myriad::passes {
 namespace {
 
-using engine::same;
-
-constexpr float pi = 3.14159265f;
+using compute::view, engine::same;
 
 class BruteTest : public engine::DeviceTest {
 protected:
     float uniform(float lo = -1, float hi = 1) { return std::uniform_real_distribution<float>(lo, hi)(random); }
     vec3 point(float scale = 1) { return scale * vec3(uniform(), uniform(), uniform()); }
-    static View view(const vec3& at, const vec3& direction, float phi) {
-        return {at, phi == pi / 2 ? 0 : std::cos(phi), glm::normalize(direction), phi == pi ? 0 : std::sin(phi)};
-    }
-    std::vector<View> random_views(size_t n, float scale) {
-        const float phis[] = {0.7f, pi / 2, pi / 2, 2.5f, pi};
-        std::vector<View> views;
-        for (size_t i = 0; i < n; ++i) views.push_back(view(point(scale), point(), phis[random() % 5]));
-        return views;
-    }
+    std::vector<View> random_views(size_t n, float scale) { return compute::random_views(random, n, scale, {0.7f, pi / 2, pi / 2, 2.5f, pi}); }
     static void triangle(TestScene& s, const vec3& a, const vec3& b, const vec3& c) {
         const uint i = s.vertex(a, {0, 1, 0}, {0, 0});
         s.vertex(b, {0, 1, 0}, {1, 0}), s.vertex(c, {0, 1, 0}, {0, 1});

@@ -24,11 +24,6 @@ DeformPass::DeformPass(engine::Device& device, const scenes::Motion& motion)
     assert(motion.count() > 0);
 }
 
-uint64_t DeformPass::bytes() const {
-    return vertices_.bytes() + influences_.bytes() + deltas_.bytes() + tangents_.bytes() + flat_triangles_.bytes() +
-           2 * (matrices_.bytes() + weights_.bytes());
-}
-
 bool DeformPass::differs(const scenes::Moment& moment) const {
     const auto same = [](const auto& values, const auto& held) {
         return values.empty() || std::memcmp(values.data(), held.span().data(), values.size() * sizeof(values[0])) == 0;

@@ -20,7 +20,6 @@ public:
     void record(engine::Recorder& recorder, const Geometry& geometry, const scenes::Moment& moment);
 
     uint32_t count() const { return uint32_t(vertices_.count()) - 1; }  // of moving vertices
-    uint64_t bytes() const;
 
 private:
     engine::Program deform_, flat_;

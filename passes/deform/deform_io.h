@@ -29,7 +29,7 @@ struct DeformFlatPush {
 MYRIAD_END
 
 #ifdef __cplusplus
-static_assert(sizeof(myriad::DeformPush) <= 128);
+static_assert(sizeof(myriad::DeformPush) <= 128 && sizeof(myriad::DeformFlatPush) <= 128);
 #endif
 
 #endif

@@ -5,6 +5,7 @@
 
 #include "engine/testing.hpp"
 #include "engine/transfer.hpp"
+#include "passes/frame.hpp"
 #include "passes/geometry/test_scene.hpp"
 
 namespace myriad::passes {
@@ -125,6 +126,56 @@ TEST_F(DeformTest, emitters_shine_by_their_area) {
         EXPECT_GT(lights[i].cdf, before) << "has no share: " << i;
         before = lights[i].cdf;
     }
+}
+
+// A punctual light that moves while an emitter stays where it has moved to leaves it its area: in the table, and through a frame.
+TEST_F(DeformTest, emitters_keep_their_area_when_another_light_moves) {
+    TestScene test;
+    const uint32_t lamp = test.material(vec3(0), vec3(1, 2, 3), true), grey = test.material(vec3(0.5f));
+    test.quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, grey);
+    test.quad({0, 0, 1}, {1, 0, 0}, {0, 2, 0}, lamp);  // grows to four times its area
+    test.light(scenes::Light::Type::point, {0.5f, 0.5f, 0.5f}, {0, 0, -1}, vec3(1));
+    test.look({0.5f, 0.5f, 5}, vec3(0.5f, 0.5f, 0));
+    scenes::Motion& motion = test.triangles.motion;
+    motion.first_vertex = 4, motion.first_triangle = 2;
+    motion.matrices.resize(1), motion.weights.resize(1);
+    for (uint32_t i = 0; i <= 4; ++i) {
+        motion.vertices.push_back({i < 4 ? test.triangles.positions[4 + i] : vec3(0), {0, 0, 1}, i, 0});
+        if (i < 4) motion.influences.push_back({0, 1});
+    }
+    scenes::Moment grown;
+    grown.matrices = {{vec3(2, 0, 0), vec3(0, 2, 0), vec3(0, 0, 1), vec3(0)}}, grown.weights = {0}, grown.lights = test.scene.lights;
+    scenes::Moment later = grown;
+    later.lights[0].position.y = 0.25f;
+
+    UploadedScene scene(device, test);
+    ASSERT_EQ(scene.lights.count(), 3u);
+    DeformPass pass(device, motion);
+    engine::Recorder recorder(device);
+    pass.record(recorder, scene.geometry, grown);
+    for (const scenes::Moment* moment : {&grown, &later}) {
+        scene.lights.move(moment->lights);
+        scene.lights.follow(recorder, scene.geometry);
+        recorder.submit_and_wait();
+        const std::vector<Light> lights = engine::download(device, scene.lights.array());
+        EXPECT_EQ(lights[0].position, moment->lights[0].position);
+        EXPECT_EQ(lights[1].extent.x, 8);
+        EXPECT_EQ(lights[2].extent.x, 8);
+    }
+
+    FrameSettings settings;
+    settings.width = settings.height = 8, settings.vpls = 64, settings.bounces = 0, settings.subset = 0, settings.filter = false;
+    settings.visibility = Visibility::none;
+    const auto flux = [&](std::initializer_list<const scenes::Moment*> moments) {  // of all VPLs, on emitters alone, at the last of them
+        Frame frame(device, test.scene, test.triangles, settings);
+        for (const scenes::Moment* moment : moments) frame.move_to(*moment), frame.render(test.scene.cameras[0]);
+        double sum = 0;
+        for (const Vpl& v : engine::download(device, frame.vpls()->vpls(), engine::download(device, frame.vpls()->count())[0])) sum += double(v.flux.y);
+        return sum;
+    };
+    const double at_once = flux({&later});
+    EXPECT_GT(at_once, 0);
+    EXPECT_NEAR(flux({&grown, &later}), at_once, 1e-6 * at_once);
 }
 
 }  // namespace

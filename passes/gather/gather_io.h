@@ -61,13 +61,13 @@ MYRIAD_FN Transfer transfer_of(vec3 x, vec3 n, Lobe lobe, vec3 vpl_position, vec
     const Reflectance r = reflectance_of(lobe, n, d / sqrt(d2), 1.0f / (bound * d2));
     t.diffuse *= r.diffuse;
     // A patch of radiance F / (pi a) is reflected as brightly at most: flux / pi * glossy <= F / (pi a), with a = pi / bound.
-    t.glossy = min(r.glossy * g, bound * (1.0f / 3.14159265f));
+    t.glossy = min(r.glossy * g, bound * (1.0f / pi));
     t.power = r.power;
     return t;
 }
 
 // Irradiance that a VPL brings: flux * (diffuse * gather_scale). Scaled VPL by VPL, so that a sum may be continued.
-MYRIAD_FN float gather_scale(uint block) { return float(block * block) / 3.14159265f; }
+MYRIAD_FN float gather_scale(uint block) { return float(block * block) / pi; }
 // No pixel gets more, so that later sums stay finite whatever the flux (W/m^2; the sun brings 1e3); of radiance neither.
 const float gather_most = 1e30f;
 

@@ -2,12 +2,11 @@
 #ifndef MYRIAD_PASSES_LIGHT_IO_H
 #define MYRIAD_PASSES_LIGHT_IO_H
 
-#include "engine/shared.h"
+#include "passes/brdf/brdf.h"
 
 MYRIAD_BEGIN
 const uint light_point = 0u, light_spot = 1u, light_directional = 2u;  // as scenes::Light::Type
 const uint light_triangle = 3u;                                        // an emissive triangle
-const float pi = 3.14159265f;
 
 // 64 bytes. The punctual lights come first, then the emissive triangles.
 struct Light {
@@ -92,7 +91,7 @@ MYRIAD_FN Incident incident_from(Light light, vec3 p) {
 MYRIAD_END
 
 #ifdef __cplusplus
-static_assert(sizeof(myriad::Light) == 64);
+static_assert(sizeof(myriad::Light) == 64 && sizeof(myriad::EmittersPush) <= 128);
 #endif
 
 #endif

@@ -32,7 +32,7 @@ IsmPass::IsmPass(engine::Device& device, const IsmScene& scene, const IsmSetting
       samples_(engine::upload(device, "scene", "samples", scene.sampling.samples)),
       points_(device, "scene", "ISM points", scene.sampling.samples.size()) {
     settings_.points = uint32_t(std::min<uint64_t>(settings.points, scene.sampling.samples.size()));
-    radius_ = settings.points ? float(settings.cover * std::sqrt(scene.sampling.area / (settings.points * std::numbers::pi))) : 0;
+    radius_ = settings_.points ? float(settings.cover * std::sqrt(scene.sampling.area / (settings_.points * std::numbers::pi))) : 0;
     threshold_ = settings.threshold * scene.extent;
 }
 

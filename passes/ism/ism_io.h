@@ -58,16 +58,15 @@ MYRIAD_FN uint ism_chosen(uint view, uint i, uint subset, uint samples, uint see
 // A point's disc as a view sees it.
 struct IsmDisc {
     vec3 d, normal;
-    float radius, height;    // height 0: seen edge-on, covers nothing
+    float radius, height;    // SplatPlane's
 };
 MYRIAD_FN IsmDisc ism_disc(View view, IsmPoint p, float radius) {
     IsmDisc s;
     s.d = p.position - view.position;
     s.radius = radius;
-    s.normal = bsh_cone_axis(p.code);
-    if ((p.code & ism_no_normal) != 0u) s.normal = s.d / sqrt(dot(s.d, s.d));
-    s.height = dot(s.d, s.normal);
-    if (!(abs(s.height) > splat_edge_on * radius)) s.height = 0.0f;
+    const SplatPlane plane = splat_plane(s.d, radius, bsh_cone_axis(p.code), (p.code & ism_no_normal) != 0u);
+    s.normal = plane.normal;
+    s.height = plane.height;
     return s;
 }
 // Along the unit direction w; negative: it passes.
@@ -115,7 +114,8 @@ const vec4 ism_weights = vec4(9.0f / 16.0f, 3.0f / 16.0f, 3.0f / 16.0f, 1.0f / 1
 MYRIAD_END
 
 #ifdef __cplusplus
-static_assert(sizeof(myriad::IsmPoint) == 16 && sizeof(myriad::IsmSplatPush) <= 128);
+static_assert(sizeof(myriad::IsmPoint) == 16 && sizeof(myriad::IsmPointsPush) <= 128 && sizeof(myriad::IsmSplatPush) <= 128);
+static_assert(sizeof(myriad::IsmLevelPush) <= 128);
 #endif
 
 #endif

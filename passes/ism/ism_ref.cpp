@@ -18,7 +18,7 @@ std::vector<uint> ism_splat_ref(std::span<const IsmPoint> points, std::span<cons
             const IsmDisc s = ism_disc(views[v], p, in.radius);
             if (s.height == 0 || outside_frustum(views[v], s.d, s.radius) || !opacity_in_view(ism_missing(p), v)) continue;
             for (uint half : {half_front, half_back}) {
-                if (half != half_of(s.d) && std::abs(s.d.x) > s.radius + splat_rim / float(size) * sqrt(dot(s.d, s.d))) continue;
+                if (half != half_of(s.d) && !splat_in_both(s.d, s.radius, size)) continue;
                 const Footprint f = footprint(half, s.d, s.radius);
                 const auto within = [&](uint x, float middle) { return splat_first(middle - f.radius, size) <= x && x < splat_end(middle + f.radius, size); };
                 for (uint y = 0; y < size; ++y)

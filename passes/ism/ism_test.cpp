@@ -4,7 +4,9 @@
 #include <cmath>
 #include <set>
 
+#include "compute/views/view_testing.hpp"
 #include "engine/testing.hpp"
+#include "passes/brute/brute_ref.hpp"
 #include "passes/geometry/test_scene.hpp"
 #include "passes/ism/ism_ref.hpp"
 #include "passes/kernels.hpp"
@@ -14,21 +16,11 @@ namespace {
 
 using engine::same;
 
-constexpr float pi = 3.14159265f;
-
 class IsmTest : public engine::DeviceTest {
 protected:
     float uniform(float lo = -1, float hi = 1) { return std::uniform_real_distribution<float>(lo, hi)(random); }
     vec3 point(float scale = 1) { return scale * vec3(uniform(), uniform(), uniform()); }
-    std::vector<View> random_views(size_t n, float scale) {
-        const float phis[] = {0.7f, pi / 2, pi / 2, 2.5f, pi};
-        std::vector<View> views;
-        for (size_t i = 0; i < n; ++i) {
-            const float phi = phis[random() % 5];
-            views.push_back({point(scale), phi == pi / 2 ? 0 : std::cos(phi), glm::normalize(point()), phi == pi ? 0 : std::sin(phi)});
-        }
-        return views;
-    }
+    std::vector<View> random_views(size_t n, float scale) { return compute::random_views(random, n, scale, {0.7f, pi / 2, pi / 2, 2.5f, pi}); }
     TestScene random_scene() {
         TestScene scene;
         scene.material(vec3(1));
@@ -59,6 +51,8 @@ protected:
         pass.place(recorder, scene.geometry);
         pass.record(recorder, on, count, o.first, o.limit, map_size, atlas);
         recorder.submit_and_wait();
+        const double points = std::min<double>(settings.points, double(sampling.samples.size()));
+        EXPECT_FLOAT_EQ(pass.radius(), points > 0 ? float(settings.cover * std::sqrt(sampling.area / (points * double(pi)))) : 0);
         EXPECT_TRUE(sampling.empty() || same_points(ism_points_ref(scene.data.world, sampling.samples), engine::download(device, pass.points())));
         return {sampling.empty() ? std::vector<IsmPoint>() : engine::download(device, pass.points()), engine::download(device, atlas), pass.radius()};
     }
@@ -172,6 +166,36 @@ TEST_F(IsmTest, subsets_are_uniform_and_differ) {
     double chi2 = 0;
     for (const uint t : times) chi2 += (t - expected) * (t - expected) / expected;
     EXPECT_LT(chi2, samples + 5 * std::sqrt(2.0 * samples));
+}
+
+// Against the truth. Discs lie in the planes of a closed room's walls, so a texel that one covers has its wall's depth. Of independent points
+// discs of a cover of 1.75 would leave exp(-1.75^2) = 0.047 of the walls bare, and these lie more evenly; small ones cover their own area at most.
+TEST_F(IsmTest, discs_give_the_depth_of_walls) {
+    TestScene room;
+    room.material(vec3(1));
+    room.room(vec3(-2), vec3(2), 0);
+    const uint size = 32;
+    const auto views = random_views(20, 1.5f);
+    const GeometryData data = geometry_data(room.scene, room.triangles);
+    const auto truth = brute_ref(data.world, views, 0, uint(views.size()), size);
+    const auto right = [&](float cover) {  // the share of texels in the frustum
+        const auto got = draw(room, views, size, {.points = 8192, .cover = cover, .levels = 0}, {.log2_samples = 14}).atlas;
+        size_t seen = 0, near = 0;
+        for (size_t v = 0; v < views.size(); ++v)
+            for (uint half : {half_front, half_back})
+                for (uint y = 0; y < size; ++y)
+                    for (uint x = 0; x < size; ++x) {
+                        const vec2 uv = texel_middle(x, y, size);
+                        if (glm::length(uv) > 1 || dot(unproject(half, uv), views[v].direction) < views[v].cos_phi) continue;
+                        const size_t at = v * map_texels(size) + texel_index(half, x, y, size);
+                        const float expected = uintBitsToFloat(truth[at]), found = uintBitsToFloat(got[at]);
+                        ++seen, near += expected < 7 && std::abs(found - expected) <= 0.01f * expected;  // 7: the room is closed
+                    }
+        EXPECT_GT(seen, 5000u);
+        return double(near) / double(seen);
+    };
+    EXPECT_GT(right(1.75f), 0.95);
+    EXPECT_LT(right(0.3f), 0.15);
 }
 
 // A hole in a wall is filled with the wall's depth; of two walls the nearer one's; nothing stays nothing.

@@ -37,6 +37,6 @@ void main() {
         if (s.height == 0.0f || outside_frustum(view, s.d, s.radius) || !opacity_in_view(ism_missing(p), v)) continue;
         const uint near = half_of(s.d);
         draw_half(s, near, map);
-        if (abs(s.d.x) <= s.radius + splat_rim / float(push.map_size) * sqrt(dot(s.d, s.d))) draw_half(s, 1u - near, map);
+        if (splat_in_both(s.d, s.radius, push.map_size)) draw_half(s, 1u - near, map);
     }
 }

@@ -18,21 +18,18 @@ ViewMaps::ViewMaps(engine::Device& device, const MapSettings& settings, uint32_t
                    const IsmScene* ism)
     : device_(device), settings_(settings), batch_(round_up(std::max(max_views, 1u), multiple)), multiple_(multiple) {
     SplatPass::check_map_size(device, settings.map_size);
+    // Before the atlas, which takes its share of what memory they leave.
+    if (settings.method == MapMethod::brute) brute_.emplace(device, *world);
+    if (settings.method == MapMethod::ism) ism_.emplace(device, *ism, settings.ism, settings.seed);
     while (batch_ > multiple_ && !is_handy(batch_)) halve();
     make_atlas();
-    switch (settings.method) {
-        case MapMethod::manylods: {
-            splat_.emplace(device);
-            if (settings.update != CutUpdate::basic) break;  // lists come with the first frame, one a batch
-            manylods_.emplace(device);
-            const uint64_t affordable = device_.memory_free() / 2 / (4 * sizeof(uvec2));
-            const uint64_t kept = std::min({groups_guess(batch_), affordable, AppendLists::max_capacity});
-            make_lists(std::max<uint64_t>(kept - kept / 4, batch_), std::max<uint64_t>(kept, 1));
-            break;
-        }
-        case MapMethod::brute: brute_.emplace(device, *world); break;
-        case MapMethod::ism: ism_.emplace(device, *ism, settings.ism, settings.seed); break;
-    }
+    if (settings.method != MapMethod::manylods) return;
+    splat_.emplace(device);
+    if (settings.update != CutUpdate::basic) return;  // lists come with the first frame, one a batch
+    manylods_.emplace(device);
+    const uint64_t affordable = device_.memory_free() / 2 / (4 * sizeof(uvec2));
+    const uint64_t kept = std::min({groups_guess(batch_), affordable, AppendLists::max_capacity});
+    make_lists(std::max<uint64_t>(kept - kept / 4, batch_), std::max<uint64_t>(kept, 1));
 }
 
 // Batches as small as still keep a device busy: lists of some 64 MiB, and maps that stay in caches. An atlas may take half of what

@@ -59,7 +59,7 @@ class ViewMaps {
 public:
     // `multiple`: batches start at multiples of this. Throws InputError for a map size that the device cannot draw, OutOfMemory
     // when not even one batch of `multiple` views fits.
-    // `world`: the triangles, for brute and ism; `ism`: for ism; they need not outlive the call.
+    // `world`: the triangles, for brute; `ism`: for ism; they need not outlive the call.
     ViewMaps(engine::Device& device, const MapSettings& settings, uint32_t max_views, uint32_t multiple,
              const compute::WorldTriangles* world = nullptr, const IsmScene* ism = nullptr);
 
@@ -81,7 +81,10 @@ public:
     const engine::Array<uint>& atlas() const { return atlas_; }
     const compute::AppendLists* lists() const { return lists_ ? &*lists_ : carried_now_ ? &carried_now_->lists() : nullptr; }  // null: the method has none, nothing overflows
     // For a tree that was built anew: cuts of the old one are forgotten.
-    void forget() { carried_now_ = nullptr, carried_.clear(); }
+    void forget() {
+        for (const auto& cut : carried_)
+            if (cut) cut->restart();
+    }
     MapCounters take_counters() { return std::exchange(counters_, {}); }
 
 private:

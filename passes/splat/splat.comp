@@ -30,7 +30,7 @@ void draw(View view, Sphere sphere, uint cone, uvec2 box, uint map) {
     if (s.height == 0.0f) return;  // seen edge-on
     const uint near = half_of(s.d);
     draw_half(s, near, map);
-    if (splat_in_both(s, push.map_size)) draw_half(s, 1u - near, map);
+    if (splat_in_both(s.d, s.radius, push.map_size)) draw_half(s, 1u - near, map);
 }
 
 void main() {

@@ -28,12 +28,26 @@ struct SplatPush {
     uint capacity, map_size, first_view;
 };
 
+// The plane of a disc or node of this radius at d, as the view sees it; `faces`: it has no normal to speak of, and faces the view.
+struct SplatPlane {
+    vec3 normal;
+    float height;    // d . normal: how far the view lies off the plane; 0: seen edge-on, covers nothing
+};
+MYRIAD_FN SplatPlane splat_plane(vec3 d, float radius, vec3 normal, bool faces) {
+    SplatPlane p;
+    p.normal = normal;
+    if (faces) p.normal = d / sqrt(dot(d, d));
+    p.height = dot(d, p.normal);
+    if (!(abs(p.height) > splat_edge_on * radius)) p.height = 0.0f;
+    return p;
+}
+
 // A node as one view sees it.
 struct Splat {
     vec3 d;          // centre - view
     float radius;
     vec3 normal;
-    float height;    // d . normal: how far the view lies off the node's plane; 0: it covers nothing
+    float height;    // SplatPlane's
     vec3 low, high;  // the box, around the centre
 };
 
@@ -41,10 +55,9 @@ MYRIAD_FN Splat splat_of(View view, Sphere sphere, uint cone, uvec2 box_code) {
     Splat s;
     s.d = sphere.center - view.position;
     s.radius = sphere.radius;
-    s.normal = bsh_cone_axis(cone);
-    if ((cone >> 24) == 255u) s.normal = s.d / sqrt(dot(s.d, s.d));  // no normal to speak of: face the view
-    s.height = dot(s.d, s.normal);
-    if (abs(s.height) <= splat_edge_on * s.radius) s.height = 0.0f;
+    const SplatPlane plane = splat_plane(s.d, s.radius, bsh_cone_axis(cone), (cone >> 24) == 255u);
+    s.normal = plane.normal;
+    s.height = plane.height;
     const BshBox box = bsh_decode_box(box_code, sphere.radius);
     const float margin = splat_margin * sphere.radius;
     s.low = box.low - margin;
@@ -64,10 +77,10 @@ MYRIAD_FN float splat_depth(Splat s, vec3 w) {
 // blends texels up to one away, along both axes (passes/gather).
 const float splat_rim = 2.8285f;
 
-// Whether the node may cover texels of the half where its centre is not: its sphere crosses the equator, or comes as near as
-// the texels reach over it that a look-up in that half blends. Their middles are directions of the other half.
-MYRIAD_FN bool splat_in_both(Splat s, uint size) {
-    return abs(s.d.x) <= s.radius + splat_rim / float(size) * sqrt(dot(s.d, s.d));
+// Whether a node or disc may cover texels of the half where its centre, at d, is not: its sphere crosses the equator, or comes as near
+// as the texels reach over it that a look-up in that half blends. Their middles are directions of the other half.
+MYRIAD_FN bool splat_in_both(vec3 d, float radius, uint size) {
+    return abs(d.x) <= radius + splat_rim / float(size) * sqrt(dot(d, d));
 }
 
 // The texels of one axis whose middles may lie in [middle - radius, middle + radius]: first, and one past the last.

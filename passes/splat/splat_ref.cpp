@@ -9,7 +9,7 @@ bool within(uint x, float middle, float radius, uint size) {
 
 void draw(const Splat& s, uint size, uint* map) {
     for (uint half : {half_front, half_back}) {
-        if (half != half_of(s.d) && !splat_in_both(s, size)) continue;
+        if (half != half_of(s.d) && !splat_in_both(s.d, s.radius, size)) continue;
         const Footprint f = footprint(half, s.d, s.radius);
         for (uint y = 0; y < size; ++y)
             for (uint x = 0; x < size; ++x) {

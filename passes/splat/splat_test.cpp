@@ -7,6 +7,7 @@
 
 #include "compute/manylods/manylods.hpp"
 #include "compute/raytrace/raytrace_io.h"
+#include "compute/views/view_testing.hpp"
 #include "engine/testing.hpp"
 #include "passes/geometry/test_scene.hpp"
 #include "passes/kernels.hpp"
@@ -15,24 +16,14 @@
 namespace myriad::passes {
 namespace {
 
-using compute::AppendLists, compute::AppendMode, compute::Bsh, compute::BshArrays;
+using compute::AppendLists, compute::AppendMode, compute::Bsh, compute::BshArrays, compute::view;
 using engine::same;
-
-constexpr float pi = 3.14159265f;
 
 class SplatTest : public engine::DeviceTest {
 protected:
     float uniform(float lo = -1, float hi = 1) { return std::uniform_real_distribution<float>(lo, hi)(random); }
     vec3 point(float scale = 1) { return scale * vec3(uniform(), uniform(), uniform()); }
-    static View view(const vec3& at, const vec3& direction, float phi) {
-        return {at, phi == pi / 2 ? 0 : std::cos(phi), glm::normalize(direction), phi == pi ? 0 : std::sin(phi)};
-    }
-    std::vector<View> random_views(size_t n, float scale) {
-        const float phis[] = {0.7f, pi / 2, 2.5f, pi};
-        std::vector<View> views;
-        for (size_t i = 0; i < n; ++i) views.push_back(view(point(scale), point(), phis[random() % 4]));
-        return views;
-    }
+    std::vector<View> random_views(size_t n, float scale) { return compute::random_views(random, n, scale, {0.7f, pi / 2, 2.5f, pi}); }
 
     // A scene and its tree on the device, and the tree read back.
     struct Tree {

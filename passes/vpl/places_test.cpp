@@ -33,6 +33,11 @@ protected:
         return frame;
     }
 
+    void prepare(VplPass& pass, const UploadedScene& scene, uint32_t bounces, uint32_t seed = 1) {
+        engine::Recorder recorder(device);
+        pass.prepare(recorder, scene.geometry, scene.bvh, scene.lights, bounces, seed);
+    }
+
     // A court that the sun looks into, now from here, now from there; boxes stand in it.
     static TestScene court() {
         std::mt19937 random(5);
@@ -64,8 +69,7 @@ TEST_F(PlacesTest, equal_the_twin_over_many_frames) {
                 TestScene wall = test;
                 wall.triangles.triangles.resize(1);
                 const UploadedScene less(device, wall);
-                engine::Recorder recorder(device);
-                pass.prepare(recorder, less.geometry, less.bvh, less.lights, bounces, 1);
+                prepare(pass, less, bounces);
             }
             PlacesRef twin{400};
             size_t died = 0, revived = 0, handed_on = 0, homeless = 0;
@@ -103,8 +107,7 @@ TEST_F(PlacesTest, move_little_where_the_light_does) {
     test.light(Type::directional, vec3(0), sun(0), vec3(1));
     UploadedScene scene(device, test);
     VplPass pass(device, 2000, scene.bvh.constants());
-    engine::Recorder recorder(device);
-    pass.prepare(recorder, scene.geometry, scene.bvh, scene.lights, 1, 1);
+    prepare(pass, scene, 1);
     Frame last = record(pass, scene, 1);
     ASSERT_GT(last.vpls.size(), 1900u);
     for (int frame = 1; frame <= 10; ++frame) {
@@ -170,8 +173,7 @@ TEST_F(PlacesTest, light_moves_with_the_lights) {
     for (uint32_t seed = 0; seed < seeds; ++seed) {
         UploadedScene moved(device, test);
         VplPass pass(device, 512, moved.bvh.constants()), other(device, 512, moved.bvh.constants());
-        engine::Recorder recorder(device);
-        pass.prepare(recorder, moved.geometry, moved.bvh, moved.lights, 1, seed);
+        prepare(pass, moved, 1, seed);
         const auto before = record(pass, moved, 1, seed);
         moved.lights.move(later.scene.lights);
         const auto guided = record(pass, moved, 1, seed), plain = record(other, made, 1, seed);
@@ -219,8 +221,7 @@ TEST_F(PlacesTest, a_light_that_comes_to_shine_gets_a_share) {
     for (const bool guided : {false, true}) {
         UploadedScene scene(device, test);
         VplPass pass(device, 2000, scene.bvh.constants());
-        engine::Recorder recorder(device);
-        if (guided) pass.prepare(recorder, scene.geometry, scene.bvh, scene.lights, 1, 1);
+        if (guided) prepare(pass, scene, 1);
         const auto flux = [&] {
             double sum = 0;
             const Frame frame = record(pass, scene, 1);
@@ -240,8 +241,7 @@ TEST_F(PlacesTest, interleaved_sets_stay_fair) {
     test.light(Type::directional, vec3(0), sun(0), vec3(1));
     UploadedScene scene(device, test);
     VplPass pass(device, 4096, scene.bvh.constants());
-    engine::Recorder recorder(device);
-    pass.prepare(recorder, scene.geometry, scene.bvh, scene.lights, 2, 1);
+    prepare(pass, scene, 2);
     Frame frame = record(pass, scene, 2);
     const auto deviation = [&](uint32_t sets, uint32_t bounce) {
         double total = 0, squares = 0;

@@ -39,13 +39,13 @@ VplPass::VplPass(engine::Device& device, uint32_t max_vpls, const engine::Consta
 void VplPass::make_slots(uint64_t slots) {
     if (slots <= slots_.count()) return;
     slots_ = {}, alive_ = {}, flags_ = {}, places_ = {}, scan_.reset();  // first, so that memory need not hold both
-    slots_ = {device_, "vpls", "VPL slots", slots};
     alive_ = {device_, "vpls", "VPL slots alive", slots};
     flags_ = {device_, "vpls", "VPL slots without place", 2 * slots + 1};
     places_ = {device_, "vpls", "VPL places", slots};
     flag_count_ = engine::upload(device_, "vpls", "VPL flag count", std::vector<uint>{uint(2 * slots)});
     scan_.emplace(device_, 2 * slots);
     pattern_ = {};
+    slots_ = {device_, "vpls", "VPL slots", slots};  // last: where memory ran out, all of it is made again
 }
 
 uint32_t VplPass::sure_paths(const LightTable& lights, uint32_t bounces) const {
