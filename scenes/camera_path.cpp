@@ -57,7 +57,7 @@ CameraPath::CameraPath(const std::string& path) : file_(path), way_{.interpolati
     });
     if (way_.times.empty()) root.fail("there are no keys", "give at least one");
     if (root.choice("interpolation", {"smooth", "linear"}, 0) == 0) smooth(way_);
-    for (const float time : way_.times) at(double(time));  // refused now, not after an hour
+    for (const float time : way_.times) at(double(time));  // refused with the file; between keys by whoever knows the moments
 }
 
 Camera CameraPath::at(double seconds) const {

@@ -213,14 +213,17 @@ void find_bounds(Triangles& out, const std::vector<Placement>& placements) {
 }
 
 // Adds where moving vertices get while the clips play, looked at at some moments. What a matrix moves stays in the box of it
-// that the matrix moves, and a vertex between those of its matrices.
+// that the matrix moves, and a vertex between those of its matrices. Where clips loop the end is the next beginning: the last
+// moment is the one just before it. Looping stays on, for clips that are shorter meet every part of the longest.
 void widen_bounds(const Scene& scene, Triangles& out) {
     const Motion& motion = out.motion;
     const int moments = int(std::clamp<size_t>((4 << 20) / (scene.nodes.size() + motion.matrices.size() + 1), 8, 128));
     double duration = 0;
     for (const uint32_t clip : motion.playback.clips) duration = std::max(duration, scene.clips[clip].duration());
+    const double last = motion.playback.loop ? std::nextafter(duration, 0.0) : duration;
     const auto each_moment = [&](auto action) {
-        for (int i = 0; i <= moments; ++i) action(moment_at(scene, motion, duration * i / moments));
+        for (int i = 0; i < moments; ++i) action(moment_at(scene, motion, duration * i / moments));
+        action(moment_at(scene, motion, last));
     };
     std::vector<float> least(motion.weights.size()), most(least);
     if (!least.empty())
@@ -266,7 +269,7 @@ Triangles flatten(Scene& scene, Sharing sharing, const Playback& playback) {
     uint64_t in_the_world = 0, motion_bytes = 0;
     for (size_t i = 0; i < scene.instances.size(); ++i) {
         const uint32_t mesh = scene.instances[i].mesh;
-        const bool again = plan.shares[i] && stored[mesh], moves = stance[i] == Stance::moving;
+        const bool again = plan.shares[i] && stored[mesh], built = stance[i] != Stance::still;  // by a MotionBuilder
         if (plan.shares[i]) stored[mesh] = true;
         for (const Primitive& p : scene.meshes[mesh].primitives) {
             in_the_world += p.indices.size() / 3;
@@ -276,7 +279,7 @@ Triangles flatten(Scene& scene, Sharing sharing, const Playback& playback) {
             attributes.tangents |= !p.tangents.empty() && !p.normals.empty();
             vertices += p.normals.empty() ? p.indices.size() : p.positions.size();
             triangles += p.indices.size() / 3;
-            if (moves) motion_bytes += (p.normals.empty() ? p.indices.size() : p.positions.size()) * motion_bytes_a_vertex(p);
+            if (built) motion_bytes += (p.normals.empty() ? p.indices.size() : p.positions.size()) * motion_bytes_a_vertex(p);
         }
     }
     if (vertices >= none || in_the_world >= none / 3)
@@ -338,14 +341,11 @@ Triangles flatten(Scene& scene, Sharing sharing, const Playback& playback) {
     find_bounds(out, placements);
     if (out.motion.count() > 0) widen_bounds(scene, out);
 
-    const auto warn = [&](size_t count, const char* what) {
-        if (count) scene.warnings.push_back(std::to_string(count) + what);
-    };
-    warn(defects.dropped, " triangles with a vertex that is not finite or beyond 1e9 m were dropped.");
-    warn(defects.denormal, " vertices with a denormal coordinate had it set to 0.");
-    warn(defects.bad_normals, " zero or non-finite normals were computed anew.");
-    warn(defects.bad_texcoords, " non-finite texture coordinates were set to 0.");
-    warn(defects.bad_colors, " non-finite vertex colours were set to white.");
+    warn(scene, defects.dropped, "triangles with a vertex that is not finite or beyond 1e9 m were dropped");
+    warn(scene, defects.denormal, "vertices with a denormal coordinate had it set to 0");
+    warn(scene, defects.bad_normals, "zero or non-finite normals were computed anew");
+    warn(scene, defects.bad_texcoords, "non-finite texture coordinates were set to 0");
+    warn(scene, defects.bad_colors, "non-finite vertex colours were set to white");
     return out;
 }
 

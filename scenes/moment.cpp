@@ -98,7 +98,7 @@ Pose pose_at(const Scene& scene, const Playback& playback, double seconds) {
 
 Moment moment_at(const Scene& scene, const Motion& motion, double seconds) {
     const Pose pose = pose_at(scene, motion.playback, seconds);
-    Moment moment{.seconds = seconds, .lights = scene.lights, .cameras = scene.cameras};
+    Moment moment{.lights = scene.lights, .cameras = scene.cameras};
     moment.matrices.reserve(motion.matrices.size());
     for (const auto& [node, bind] : motion.matrices) {
         const glm::dmat4 matrix = pose.worlds[node] * bind;

@@ -18,7 +18,6 @@ Pose pose_at(const Scene& scene, const Playback& playback, double seconds);
 
 // What a frame takes to the device.
 struct Moment {
-    double seconds = 0;
     std::vector<Affine> matrices;   // Motion::matrices' values: a mesh's space to the world
     std::vector<float> weights;     // Motion::weights' values
     std::vector<Light> lights;      // all of Scene::lights, in that order, where they are now

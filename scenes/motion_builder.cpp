@@ -61,6 +61,7 @@ void MotionBuilder::finish() {
 
 PosedPrimitive::PosedPrimitive(MotionBuilder& builder, uint32_t instance, const Primitive& primitive)
     : builder_(builder), tangents_(primitive.normals.empty() ? std::vector<glm::vec4>() : primitive.tangents) {
+    for (glm::vec4& t : tangents_) t.w = t.w < 0 ? -1.0f : 1.0f;  // as of what stands still, whatever a file says
     const std::vector<glm::vec3> normals = sound_normals(primitive, bad_normals_);
     const size_t count = primitive.positions.size();
     own_.vertices.reserve(count + 1);

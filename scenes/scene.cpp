@@ -17,6 +17,10 @@ constexpr glm::vec3 up{0, 1, 0};
 
 }  // namespace
 
+void warn(Scene& scene, size_t count, std::string_view what) {
+    if (count) scene.warnings.push_back(std::to_string(count) + " " + std::string(what) + ".");
+}
+
 Camera framing_camera(const Triangles& triangles) {
     Camera camera;
     camera.name = "framing";

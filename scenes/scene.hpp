@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -74,7 +75,6 @@ struct Primitive {
 struct Mesh {
     std::string name;
     std::vector<Primitive> primitives;
-    std::vector<float> weights;  // of the morph targets where no node says others; one a target
 };
 
 struct Instance {
@@ -116,6 +116,9 @@ struct Scene {
     std::vector<Clip> clips;
     std::vector<std::string> warnings; // harmless defects that were repaired or ignored, one sentence each
 };
+
+// Appends the warning "COUNT WHAT." where there is anything to count.
+void warn(Scene& scene, size_t count, std::string_view what);
 
 // A range of the scene's triangles: an instance of a mesh that is stored once, or what is stored in world space as it is.
 struct Placement {

@@ -1,6 +1,7 @@
 // The tea table: big enough, closed china, a room without gaps, and sun on the cloth.
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -9,6 +10,7 @@
 #include "scenes/builtin/teatime_parts.hpp"
 #include "scenes/builtin_kit.hpp"
 #include "scenes/moment.hpp"
+#include "scenes/stance.hpp"
 
 namespace myriad::scenes {
 namespace {
@@ -79,6 +81,22 @@ TEST(TeatimeClip, SpoonStirsCakeTurnsCurtainsBillow) {
     float most = 0;
     for (size_t i = 0; i < begin.size(); ++i) most = std::max(most, glm::length(begin[i] - end[i]));
     EXPECT_LT(most, 1e-4f) << "the end is the beginning";
+    // After a second the spoon is on the other side, the cake has turned by 45 degrees, and the wave has travelled a quarter.
+    const auto later = positions(1);
+    const std::vector<Stance> stance = stances(again, t.motion.playback);
+    std::map<std::string, float> ways;  // by what moves: the longest
+    size_t vertex = t.motion.first_vertex;
+    for (size_t i = 0; i < stance.size(); ++i) {
+        if (stance[i] != Stance::moving) continue;
+        const Node& own = again.nodes[again.instances[i].node];
+        float& way = ways[own.name.empty() ? again.nodes[own.parent].name : own.name];
+        for (const Primitive& p : again.meshes[again.instances[i].mesh].primitives)
+            for (const size_t last = vertex + (p.normals.empty() ? p.indices.size() : p.positions.size()); vertex < last; ++vertex)
+                way = std::max(way, glm::length(later.at(vertex) - begin.at(vertex)));
+    }
+    EXPECT_EQ(vertex, begin.size());
+    EXPECT_EQ(ways.size(), 3u);
+    for (const char* name : {"spoon", "turntable", "curtains"}) EXPECT_GT(ways[name], 0.01f) << name;
     // The spoon stays inside of its cup: below the rim, no point of it is farther from the axis than the china's inside.
     const size_t spoon = size_t(std::ranges::find_if(again.instances, [&](const Instance& i) { return i.node != none && again.nodes[i.node].name == "spoon"; }) - again.instances.begin());
     ASSERT_LT(spoon, again.instances.size());

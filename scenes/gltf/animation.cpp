@@ -9,16 +9,14 @@ namespace myriad::scenes::gltf {
 namespace {
 
 struct LeftOut {
-    size_t paths = 0, weights = 0, keys = 0, rotations = 0;
+    size_t paths = 0, weights = 0, instanced = 0, keys = 0, rotations = 0;
 
-    void warn(Scene& scene) const {
-        const auto say = [&](size_t count, const char* what) {
-            if (count) scene.warnings.push_back(std::to_string(count) + what);
-        };
-        say(paths, " channels of animations were left out, for they move something else than a node's translation, rotation, scale or weights.");
-        say(weights, " channels of animations were left out, for they are weights of nodes without morph targets.");
-        say(keys, " keys of animations were left out, for another has the same time.");
-        say(rotations, " keys of animations are rotations of no length, which turn nothing.");
+    void report(Scene& scene) const {
+        warn(scene, paths, "channels of animations were left out, for they move something else than a node's translation, rotation, scale or weights");
+        warn(scene, weights, "channels of animations were left out, for they are weights of nodes without morph targets");
+        warn(scene, instanced, "channels of animations were left out, for they are weights of nodes with EXT_mesh_gpu_instancing");
+        warn(scene, keys, "keys of animations were left out, for another has the same time");
+        warn(scene, rotations, "keys of animations are rotations of no length, which turn nothing");
     }
 };
 
@@ -95,6 +93,10 @@ void read_clip(const Place& place, const tinygltf::Animation& in, const Hierarch
         if (node == none) continue;
         if (path->second != Path::weights && scene.nodes[node].matrix)
             here.fail("it moves node " + std::to_string(channel.target_node) + ", which has a matrix", "give that node translation, rotation and scale");
+        // Each instance has a node of its own, and those have the weights.
+        const bool instanced = path->second == Path::weights && extension(place.model.nodes[size_t(channel.target_node)], instancing_extension);
+        left_out.instanced += instanced;
+        if (instanced) continue;
         const uint32_t width = path->second == Path::weights ? uint32_t(scene.nodes[node].weights.size()) : path->second == Path::rotation ? 4 : 3;
         left_out.weights += width == 0;
         if (width == 0) continue;
@@ -119,7 +121,7 @@ void read_animations(const Place& place, const Hierarchy& hierarchy, Scene& scen
         const auto& in = place.model.animations[i];
         read_clip(place.at("animation " + std::to_string(i) + " " + quote(in.name)), in, hierarchy, scene, left_out);
     }
-    left_out.warn(scene);
+    left_out.report(scene);
 }
 
 void prune_nodes(Scene& scene) {

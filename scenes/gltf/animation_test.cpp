@@ -124,6 +124,10 @@ TEST_F(GltfAnimated, EightJointsAVertex) {
     for (const vec3& p : at(scene, 1).positions) EXPECT_NEAR(p.z, 2, 1e-6);
     expect_kept(scene);
     valid = false;
+    // Eight roundings to a byte may add up to more than four: 252 of 255 is as meant.
+    primitive()["attributes"]["WEIGHTS_0"] = accessor(view(std::vector<uint8_t>(16, 32)), u8, "VEC4", 4, 0, true);
+    primitive()["attributes"]["WEIGHTS_1"] = accessor(view(std::vector<uint8_t>(16, 31)), u8, "VEC4", 4, 0, true);
+    EXPECT_TRUE(read().warnings.empty());
     primitive()["attributes"]["WEIGHTS_2"] = primitive()["attributes"]["WEIGHTS_1"], primitive()["attributes"]["JOINTS_2"] = primitive()["attributes"]["JOINTS_1"];
     EXPECT_NE(read().warnings.at(0).find("more than eight joints"), std::string::npos);
 }
@@ -206,20 +210,43 @@ TEST_F(GltfAnimated, InstancesOfOneNodeMoveWithIt) {
     expect_near(t.positions[4], {5, 0, 3});
 }
 
+// They have the weights at rest. A clip could only move those of all of them at once, which is not read.
+TEST_F(GltfAnimated, InstancesOfOneNodeKeepTheirShape) {
+    square();
+    const std::vector<float> up = {0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0};
+    const int target = floats(up, "VEC3", 3);
+    bound(target, up);
+    primitive()["targets"] = {{{"POSITION", target}}};
+    doc["meshes"][0]["weights"] = {0.5};
+    doc["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] = floats({0, 0, 0, 5, 0, 0}, "VEC3", 3);
+    channel(0, "weights", times({0, 1}), floats({0, 1}, "SCALAR", 1));
+    Scene scene = read();
+    ASSERT_EQ(scene.warnings.size(), 1u);
+    EXPECT_EQ(scene.warnings[0], "1 channels of animations were left out, for they are weights of nodes with EXT_mesh_gpu_instancing.");
+    ASSERT_EQ(scene.clips.size(), 1u);
+    EXPECT_TRUE(scene.clips[0].channels.empty());
+    const Triangles t = at(scene, 1);
+    EXPECT_EQ(t.motion.count(), 0u);
+    ASSERT_EQ(t.positions.size(), 8u);
+    expect_near(t.positions[2], {1, 1.5f, 0});
+    expect_near(t.positions[6], {6, 1.5f, 0});
+}
+
 TEST_F(GltfAnimated, HarmlessDefectsAreCounted) {
     valid = false;
     skinned();
     primitive()["attributes"]["WEIGHTS_0"] = floats({2, 2, 0, 0, 0, 0, 0, 0, -1, 1, 0, 0, NAN, 1, 0, 0}, "VEC4", 4);
-    channel(2, "rotation", times({0, 1, 1, 2}), floats({0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, "VEC4", 4));
+    channel(2, "rotation", times({0, 1, 1, 2, 3}), floats({0, 0, 0, 1, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 1}, "VEC4", 4));
     channel(2, "pointer", 0, 0);
     channel(1, "weights", times({0}), floats({1}, "SCALAR", 1));
     Scene scene = read();
     std::string all;
     for (const std::string& warning : scene.warnings) all += warning + "\n";
     for (const char* part : {"4 vertices have joint weights", "1 channels of animations were left out, for they move something else",
-                             "1 channels of animations were left out, for they are weights", "1 keys of animations were left out"})
+                             "1 channels of animations were left out, for they are weights", "1 keys of animations were left out",
+                             "1 keys of animations are rotations of no length, which turn nothing"})
         EXPECT_NE(all.find(part), std::string::npos) << part << " is not in\n" << all;
-    EXPECT_EQ(scene.clips[0].tracks[0].times, (std::vector<float>{0, 1, 2}));
+    EXPECT_EQ(scene.clips[0].tracks[0].times, (std::vector<float>{0, 1, 2, 3}));
     EXPECT_EQ(scene.clips[0].tracks[0].values[6], 1) << "of two keys at one time the later one counts";
     expect_near(at(scene, 0).positions[0], {0, 0, 0});
     // Singular matrices flatten; a skin for a mesh without joints is none.

@@ -75,13 +75,10 @@ struct Defects {
     JointDefects joints;
     size_t deltas = 0;
 
-    void warn(Scene& scene) const {
-        const auto say = [&](size_t count, const char* what) {
-            if (count) scene.warnings.push_back(std::to_string(count) + what);
-        };
-        say(joints.sums, " vertices have joint weights that do not sum to 1; they were made to.");
-        say(joints.sets, " primitives have more than eight joints a vertex; the others were left out.");
-        say(deltas, " displacements of morph targets are not finite or beyond 1e9 m and were set to 0.");
+    void report(Scene& scene) const {
+        warn(scene, joints.sums, "vertices have joint weights that do not sum to 1; they were made to");
+        warn(scene, joints.sets, "primitives have more than eight joints a vertex; the others were left out");
+        warn(scene, deltas, "displacements of morph targets are not finite or beyond 1e9 m and were set to 0");
     }
 };
 
@@ -165,8 +162,8 @@ void read_meshes(const Place& place, Scene& scene) {
             mesh.primitives.push_back(read_primitive(here, in.primitives[p], skinned[m], defects));
         }
     }
-    if (lines) scene.warnings.push_back(std::to_string(lines) + " primitives made of points or lines were left out.");
-    defects.warn(scene);
+    warn(scene, lines, "primitives made of points or lines were left out");
+    defects.report(scene);
 }
 
 }  // namespace myriad::scenes::gltf

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include <glm/gtc/matrix_transform.hpp>
-#include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
-#include "engine/error.hpp"
 #include "scenes/moment.hpp"
 
 namespace myriad::scenes::gltf {
@@ -60,14 +58,11 @@ bool has_movement(const tinygltf::Model& model) {
 struct LeftOut {
     size_t orthographic = 0, cameras = 0, lights = 0, instances = 0;
 
-    void warn(Scene& scene) const {
-        const auto say = [&](size_t count, const char* what) {
-            if (count) scene.warnings.push_back(std::to_string(count) + what);
-        };
-        say(orthographic, " orthographic cameras were left out.");
-        say(cameras, " cameras were left out, for their nodes are scaled to nothing, not finite or beyond 1e9 m.");
-        say(lights, " lights were left out, for their nodes are scaled to nothing, not finite or beyond 1e9 m.");
-        say(instances, " instances of a mesh were left out, for their transforms are not finite or beyond 1e9 m.");
+    void report(Scene& scene) const {
+        warn(scene, orthographic, "orthographic cameras were left out");
+        warn(scene, cameras, "cameras were left out, for their nodes are scaled to nothing, not finite or beyond 1e9 m");
+        warn(scene, lights, "lights were left out, for their nodes are scaled to nothing, not finite or beyond 1e9 m");
+        warn(scene, instances, "instances of a mesh were left out, for their transforms are not finite or beyond 1e9 m");
     }
 };
 
@@ -155,7 +150,7 @@ public:
             stack_.pop_back();
             visit(index, parent);
         }
-        left_out_.warn(scene_);
+        left_out_.report(scene_);
         return std::move(hierarchy_);
     }
 
@@ -211,9 +206,14 @@ private:
         };
         const uint32_t skin = node.skin >= 0 && at.node != none ? uint32_t(node.skin) : none;
         if (!instancing) return add(at.to_world, at.node, skin);
-        for (const glm::dmat4& within : instance_transforms(place, *instancing)) {  // a node each below the one that has them
+        // A node each below the one that has them, and where a mesh stands its weights are.
+        const std::vector<float> weights = at.node != none ? std::exchange(scene_.nodes[at.node].weights, {}) : std::vector<float>();
+        for (const glm::dmat4& within : instance_transforms(place, *instancing)) {
             uint32_t number = at.node;
-            if (number != none) place.spend(1, sizeof(Node)), number = keep({.matrix = within, .weights = scene_.nodes[at.node].weights}, at.node);
+            if (number != none) {
+                place.spend(1, sizeof(Node) + weights.size() * sizeof(float));
+                number = keep({.matrix = within, .weights = weights}, at.node);
+            }
             add(at.to_world * within, number, none);
         }
     }

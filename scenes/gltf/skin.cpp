@@ -11,10 +11,11 @@ namespace myriad::scenes::gltf {
 namespace {
 
 // Weights that are stored in a byte sum to 1 within half of 1/255 each; what is farther off was not meant to.
-constexpr double rounding = 4 * 0.5 / 255 + 1e-6;
+constexpr double rounding(int weights) { return weights * 0.5 / 255 + 1e-6; }
 
 // Makes the weights of each vertex sum to 1, within what a float can say, and those that count nothing exactly 0.
 void normalise(Primitive& p, JointDefects& defects) {
+    const double off = rounding(p.joint_weights[1].empty() ? 4 : 8);
     for (size_t i = 0; i < p.positions.size(); ++i) {
         double sum = 0;
         bool bad = false;
@@ -24,7 +25,7 @@ void normalise(Primitive& p, JointDefects& defects) {
                 if (!(w >= 0) || !std::isfinite(w)) w = 0, bad = true;
                 sum += double(w);
             }
-        defects.sums += bad || std::abs(sum - 1) > rounding;
+        defects.sums += bad || std::abs(sum - 1) > off;
         if (!(sum > 0)) {
             p.joint_weights[0][i] = glm::vec4(1, 0, 0, 0);  // with its first joint, as others do
         } else if (std::abs(sum - 1) > 1e-7) {  // once they were made to, rounding leaves less
@@ -134,8 +135,8 @@ void read_skins(const Place& place, const Hierarchy& hierarchy, Scene& scene) {
                           std::to_string(scene.skins[skin].joints.size()), "export the file again");
         instance.skin = skin;
     }
-    if (boneless) scene.warnings.push_back(std::to_string(boneless) + " instances with a skin but without joints stand at their nodes.");
-    if (singular) scene.warnings.push_back(std::to_string(singular) + " inverse bind matrices are singular: what they move is flat.");
+    warn(scene, boneless, "instances with a skin but without joints stand at their nodes");
+    warn(scene, singular, "inverse bind matrices are singular: what they move is flat");
 }
 
 }  // namespace myriad::scenes::gltf

@@ -41,17 +41,14 @@ void append_vertex(Primitive& out, const Primitive& in, uint32_t i) {
 struct Defects {
     size_t unusable = 0, flat = 0, normals = 0, tangents = 0, texcoords = 0, colors = 0, instances = 0;
 
-    void report(std::vector<std::string>& warnings) const {
-        const auto say = [&](size_t count, const char* what) {
-            if (count) warnings.push_back(std::to_string(count) + " " + what + ".");
-        };
-        say(unusable, "triangles with a corner that is not finite were left out");
-        say(flat, "triangles without area were left out");
-        say(normals, "zero or non-finite normals were computed anew");
-        say(tangents, "primitives with useless tangents lost them");
-        say(texcoords, "texture coordinates that were not finite were set to 0");
-        say(colors, "vertex colours that were not finite were set to white");
-        say(instances, "instances whose transform is not finite or not affine were left out");
+    void report(Scene& scene) const {
+        warn(scene, unusable, "triangles with a corner that is not finite were left out");
+        warn(scene, flat, "triangles without area were left out");
+        warn(scene, normals, "zero or non-finite normals were computed anew");
+        warn(scene, tangents, "primitives with useless tangents lost them");
+        warn(scene, texcoords, "texture coordinates that were not finite were set to 0");
+        warn(scene, colors, "vertex colours that were not finite were set to white");
+        warn(scene, instances, "instances whose transform is not finite or not affine were left out");
     }
 };
 
@@ -332,7 +329,7 @@ void tidy(Scene& scene, float crease) {
             if (p.normals.empty() && crease > 0) smooth_normals(p, crease);
         }
     drop_unused(scene);
-    defects.report(scene.warnings);
+    defects.report(scene);
 }
 
 }  // namespace myriad::scenes
