@@ -4,6 +4,8 @@
 #include <chrono>
 #include <cmath>
 #include <fstream>
+#include <map>
+#include <sstream>
 #include <thread>
 
 #include <nlohmann/json.hpp>
@@ -252,7 +254,8 @@ TEST_F(command_line, frames_are_moments) {
     const auto same = [&](const Arguments& how, const char* frame) {
         succeed(render + Arguments{"-o", exr} + how);
         const auto a = read_exr(exr), b = read_exr(folder / frame);
-        for (size_t i = 0; i < a.pixels(); ++i) ASSERT_EQ(a.rgb()->r[i], b.rgb()->r[i]) << testing::PrintToString(how) << " pixel " << i;
+        ASSERT_EQ(std::pair(a.width, a.height), std::pair(b.width, b.height));
+        for (const char* name : {"R", "G", "B"}) EXPECT_TRUE(a.find(name)->values == b.find(name)->values) << testing::PrintToString(how) << " " << name;
     };
     same({"--time", "0.25"}, "a.0001.exr");
     same({"--time", "1.25", "--animation", "rise"}, "a.0001.exr");
@@ -281,9 +284,15 @@ TEST_F(command_line, moments_that_make_no_sense) {
     refuse(2, moving + Arguments{"--frames", "0-1", "--repeat", "2"}, "--repeat");
     refuse(2, moving + Arguments{"--time", "soon"}, "--time 'soon'");
     refuse(2, moving + Arguments{"--fps", "0", "--frames", "0-1"}, "--fps '0'");
+    refuse(2, moving + Arguments{"--fps", "12"}, "--fps needs frames");
+    refuse(2, moving + Arguments{"--fps", "12", "--time", "1"}, "--fps needs frames");
     refuse(2, moving + Arguments{"--camera-path", input / "none.json", "--time", "0"}, "none.json");
     refuse(2, moving + Arguments{"--camera-path", input / "way.json"}, "which moment");
     refuse(2, moving + Arguments{"--camera-path", input / "way.json", "--camera", "0", "--time", "0"}, "--camera and --camera-path");
+    // Through its own target, half way between two good keys: said before the first frame, which would be good.
+    put(input / "through.json", R"({"camera_path": 1, "interpolation": "linear", "keys": [{"time": 0, "eye": [0, 0, 3], "target": [0, 0, 0]},
+                                                                                          {"time": 1, "eye": [0, 0, -3], "target": [0, 0, 0]}]})");
+    refuse(2, moving + Arguments{"--camera-path", input / "through.json", "--frames", "0-2", "--fps", "2"}, "at 0.500000 s the eye is at the target");
 }
 
 TEST_F(command_line, the_same_render_gives_the_same_bytes) {
@@ -333,6 +342,25 @@ TEST_F(command_line, compare) {
     EXPECT_EQ(o.status, 1) << o.err;
     EXPECT_EQ(o.error_lines(), 1) << o.err;
     EXPECT_GT(nlohmann::json::parse(o.out)["MSE"], 0);
+}
+
+// A row for each technique and step of the light. What the numbers are is no test's business here.
+TEST_F(command_line, bench_table_1) {
+    succeed({"bench", "manylods-table1", "--scene", "builtin:cornell?light=point", "--views", "4", "--samples", "6", "--map-size", "4", "--repeat", "1",
+             "--json", folder / "rows.json"});
+    std::istringstream lines(bytes_of(folder / "rows.json"));
+    std::map<double, Arguments> techniques;  // by the step
+    for (std::string line; std::getline(lines, line);) {
+        const auto row = nlohmann::json::parse(line);
+        EXPECT_EQ(row["bench"], "manylods-table1");
+        EXPECT_EQ(row["views"], 4);
+        EXPECT_EQ(row["ms"]["n"], 1) << line;
+        EXPECT_FALSE(row["stages"].empty()) << line;
+        EXPECT_TRUE(row["error"]["relMSE"].is_number()) << line;
+        techniques[row["settings"]["light_step_deg"].get<double>()].push_back(row["technique"].get<std::string>());
+    }
+    const Arguments all = {"brute", "ism", "basic", "incremental", "incremental", "lazy"};
+    EXPECT_EQ(techniques, (std::map<double, Arguments>{{1, all}, {10, all}}));
 }
 
 TEST_F(command_line, convert) {

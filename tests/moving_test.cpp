@@ -46,8 +46,8 @@ scenes::Scene room(bool lamps) {
     }
     swelling.targets = {{{}, {}}};
     for (const vec3& p : swelling.positions) swelling.targets[0].positions.push_back(0.8f * (p - vec3(1.25f, 0.2f, 1.25f)));
-    scene.meshes = {{"room", {box({-3, 0, -3}, {3, 4, 3}, 0, true), panel}, {}}, {"bar", {bar}, {}}, {"swelling", {swelling}, {0}},
-                    {"block", {box(vec3(-0.4f), vec3(0.4f), 2)}, {}}};
+    scene.meshes = {{"room", {box({-3, 0, -3}, {3, 4, 3}, 0, true), panel}}, {"bar", {bar}}, {"swelling", {swelling}},
+                    {"block", {box(vec3(-0.4f), vec3(0.4f), 2)}}};
     scene.nodes = {{.name = "low"}, {.name = "high", .parent = 0, .rest = {.translation = {0, 1.5, 0}}}, {.name = "bar"},
                    {.name = "swelling", .weights = {0}}, {.name = "block", .rest = {.translation = {-2.4, 1, -1}}}, {.name = "lamp"}};
     glm::mat4 inverse(1);

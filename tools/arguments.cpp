@@ -48,6 +48,12 @@ double parse_seconds(const std::string& option, const std::string& text) {
     refuse(option, text, "give seconds, from -1e6 to 1e6");
 }
 
+double parse_rate(const std::string& option, const std::string& text) {
+    double value = 0;
+    if (read(text, value) && value >= 0.001 && value <= 100000) return value;  // NaN is not
+    refuse(option, text, "give a number from 0.001 to 100000");
+}
+
 std::pair<uint32_t, uint32_t> parse_frames(const std::string& option, const std::string& text) {
     constexpr uint32_t most = 999999;
     const size_t dash = std::min(text.find('-'), text.size());

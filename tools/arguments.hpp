@@ -19,6 +19,7 @@ float parse_number(const std::string& option, const std::string& text, float lea
 std::pair<uint32_t, uint32_t> parse_size(const std::string& option, const std::string& text);
 constexpr uint32_t max_side = 16384;
 double parse_seconds(const std::string& option, const std::string& text);  // any finite number up to 1e6, either sign
+double parse_rate(const std::string& option, const std::string& text);     // a second: from 0.001 to 100000
 // "A-B", or "A" for one: numbers of frames, A <= B < 10^6.
 std::pair<uint32_t, uint32_t> parse_frames(const std::string& option, const std::string& text);
 // "all" is 0, "subset:K" is K, from 1 on.

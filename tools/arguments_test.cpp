@@ -34,6 +34,15 @@ TEST(arguments, numbers) {
         EXPECT_TRUE(contains(input_error([&] { parse_number("--epsilon", text, 1e-3f, 1e6f); }), "from 0.001 to 1e+06")) << text;
 }
 
+// In double: no frame of a film may be at another moment than the one that its number says.
+TEST(arguments, rates) {
+    EXPECT_EQ(parse_rate("--fps", "29.97"), 29.97);
+    EXPECT_EQ(parse_rate("--fps", "0.001"), 0.001);
+    EXPECT_EQ(parse_rate("--fps", "100000"), 100000);
+    for (const char* text : {"", "0", "-24", "nan", "inf", "100001", "24fps", "30000/1001"})
+        EXPECT_TRUE(contains(input_error([&] { parse_rate("--fps", text); }), "from 0.001 to 100000")) << text;
+}
+
 TEST(arguments, gathers_read_back) {
     for (uint32_t subset : {0u, 1u, 256u, ~0u}) EXPECT_EQ(parse_gather("--gather", show_gather(subset)), subset);
     for (const char* text : {"", "subset", "subset:", "subset:0", "subset:-1", "subset:1.5", "subset:4294967296", "culled:8", "ALL"})

@@ -21,6 +21,20 @@
 namespace myriad::tools {
 namespace {
 
+// What is rendered: moments, and how often each. Without a number it is one image.
+struct Shot {
+    std::optional<uint32_t> number;
+    std::optional<double> seconds;  // absent: the scene is at rest
+};
+
+std::vector<Shot> shots(const RenderOptions& options) {
+    if (!options.frames) return std::vector<Shot>(options.repeat, {{}, options.moves() ? std::optional(options.time.value_or(0)) : std::nullopt});
+    const double fps = options.fps.value_or(RenderOptions::usual_fps);
+    std::vector<Shot> out;
+    for (uint32_t i = options.frames->first; i <= options.frames->second; ++i) out.push_back({i, double(i) / fps});
+    return out;
+}
+
 struct Loaded {
     scenes::Scene scene;
     scenes::Triangles triangles;
@@ -31,6 +45,8 @@ struct Loaded {
 Loaded load(const RenderOptions& options, Progress& progress) {
     Loaded loaded;
     if (!options.camera_path.empty()) loaded.path.emplace(options.camera_path);
+    if (loaded.path)
+        for (const Shot& shot : shots(options)) loaded.path->at(*shot.seconds);  // refused now, not after an hour
     loaded.scene = scenes::load(options.scene);
     scenes::apply_sky(loaded.scene, options.sky);
     scenes::Playback playback{.loop = options.loop};
@@ -48,19 +64,6 @@ Loaded load(const RenderOptions& options, Progress& progress) {
 std::string camera_name(const Loaded& loaded) {
     if (loaded.path) return loaded.path->at(0).name;
     return loaded.camera == scenes::none ? "(all in view)" : loaded.scene.cameras[loaded.camera].name;
-}
-
-// What is rendered: moments, and how often each. Without a number it is one image.
-struct Shot {
-    std::optional<uint32_t> number;
-    std::optional<double> seconds;  // absent: the scene is at rest
-};
-
-std::vector<Shot> shots(const RenderOptions& options) {
-    if (!options.frames) return std::vector<Shot>(options.repeat, {{}, options.moves() ? std::optional(options.time.value_or(0)) : std::nullopt});
-    std::vector<Shot> out;
-    for (uint32_t i = options.frames->first; i <= options.frames->second; ++i) out.push_back({i, double(i) / options.fps});
-    return out;
 }
 
 Picture to_picture(const std::vector<uint>& rgba, const Image& image) {
@@ -96,7 +99,8 @@ void write_reports(const RenderOptions& options, RunRecord& run) {
 class Film {
 public:
     Film(const RenderOptions& options, RunRecord& run, engine::Device& device, Loaded& loaded, Progress& progress)
-        : options_(options), run_(run), device_(device), loaded_(loaded), progress_(progress), settings_(options.frame), shots_(shots(options)) {
+        : options_(options), run_(run), device_(device), loaded_(loaded), progress_(progress), settings_(options.frame), shots_(shots(options)),
+          cameras_(loaded.scene.cameras) {
         settings_.progress = [this](const std::string& stage, double done) {
             const std::string which = "frame " + std::to_string(run_.frames.size() + 1) + " of " + std::to_string(shots_.size());
             progress_.show(shots_.size() > 1 ? which + ": " + stage : stage, done);
@@ -119,11 +123,11 @@ private:
         if (loaded_.triangles.motion.plays() && moment_ != shot.seconds) {
             const scenes::Moment moment = scenes::moment_at(loaded_.scene, loaded_.triangles.motion, *shot.seconds);
             frame_->move_to(moment);
-            loaded_.scene.cameras = moment.cameras;
+            cameras_ = moment.cameras;
             moment_ = shot.seconds;
         }
         if (loaded_.path) return loaded_.path->at(*shot.seconds);
-        return loaded_.camera == scenes::none ? scenes::framing_camera(loaded_.triangles) : loaded_.scene.cameras[loaded_.camera];
+        return loaded_.camera == scenes::none ? scenes::framing_camera(loaded_.triangles) : cameras_[loaded_.camera];
     }
 
     void build() {
@@ -171,6 +175,7 @@ private:
     Progress& progress_;
     passes::FrameSettings settings_;
     const std::vector<Shot> shots_;
+    std::vector<scenes::Camera> cameras_;  // at the moment; the scene keeps them at rest, for each moment starts from there
     std::optional<engine::Cache> cache_;
     std::unique_ptr<passes::Frame> frame_;
     std::optional<double> moment_;  // at which the scene stands, of those who move

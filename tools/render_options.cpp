@@ -73,9 +73,7 @@ void add_movement(CLI::App& command, RenderOptions& o) {
     add_parsed(command, "--time", "S", "", "the moment to render, in seconds; 0 with --animation", [&o](const std::string& text) { o.time = parse_seconds("--time", text); });
     add_parsed(command, "--frames", "A-B", "", "frames A to B, frame i at i / fps seconds; FILE.exr becomes FILE.0000.exr and so on",
                [&o](const std::string& text) { o.frames = parse_frames("--frames", text); });
-    add_parsed(command, "--fps", "N", "24", "frames a second", [&o](const std::string& text) {
-        o.fps = double(parse_number("--fps", text, 0.001f, 100000));
-    });
+    add_parsed(command, "--fps", "N", "24", "frames a second, of --frames", [&o](const std::string& text) { o.fps = parse_rate("--fps", text); });
     add_choice(command, "--loop", o.loop, {{"on", true}, {"off", false}}, "clips begin again at their ends, or stay there");
     command.add_option("--camera-path", o.camera_path, "the camera's way, in place of the scene's cameras: JSON, see scenes/README.md")->type_name("FILE");
 }
@@ -180,6 +178,7 @@ void check_outputs(const RenderOptions& o) {
     if (o.exr.empty() && !o.layers.empty()) throw InputError("--aov needs an EXR to put the layers in; name one with -o FILE.exr");
     if (o.png.empty() && o.exposure) throw InputError("--exposure needs a picture to apply to; name one with --png FILE.png");
     if (o.time && o.frames) throw InputError("--time and --frames both say which moment to render; give one of them");
+    if (o.fps && !o.frames) throw InputError("--fps needs frames to be the rate of; name them with --frames");
     if (o.frames && o.repeat > 1) throw InputError("--frames renders a moment each, --repeat one moment again and again; give one of them");
     if (!o.camera_path.empty() && !o.camera.empty()) throw InputError("--camera and --camera-path both say where to look from; give one of them");
     if (!o.camera_path.empty() && !o.time && !o.frames) throw InputError("--camera-path is a way in time; say which moment with --time, or which with --frames");

@@ -29,7 +29,8 @@ struct RenderOptions {
     bool loop = true;
     std::optional<double> time;          // seconds; absent: the scene is at rest, unless `frames` says otherwise
     std::optional<std::pair<uint32_t, uint32_t>> frames;  // first and last; frame i is i / fps seconds in
-    double fps = 24;
+    std::optional<double> fps;           // absent: usual_fps
+    static constexpr double usual_fps = 24;
 
     bool moves() const { return time || frames || !animation.empty(); }  // whether a moment is asked for at all
     bool full_floats = false, quiet = false;
