@@ -1,9 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Sorts out the items that are due: those that a moved view may have brought to another side of the criterion or of the frustum.
-#include "compute/append/append.glsl"
-#include "compute/incremental/incremental_io.h"
-layout(push_constant, scalar) uniform Push { CarryPush push; };
+#include "compute/incremental/evaluate.glsl"
 
 void main() {
     const uint item = append_item();
@@ -12,8 +10,10 @@ void main() {
         CarriedRefs memory = push.memory.at[0];
         const uvec2 code = memory.codes.at[item];
         if (!cut_is_hole(code)) {
-            const Travel t = memory.travels.at[cut_unpack(code).view - push.first_view];
-            found = (push.flags & carry_all) != 0u || is_due(memory.dues.at[item], t) ? 1u : 0u;
+            const CutGroup group = cut_unpack(code);
+            const Travel t = memory.travels.at[group.view - push.first_view];
+            const bool moved = (t.flags & travel_moved) != 0u || (push.flags & carry_bounds) != 0u;
+            found = (push.flags & carry_all) != 0u || is_due(memory.dues.at[item], t, way_of(group.block), moved) ? 1u : 0u;
         }
     }
     found = append_payload(item, found, push.lists);

@@ -23,6 +23,16 @@ void look(inout Evaluation e, View view, vec3 d, float r, uint height, uint wher
     e.reach = max(e.reach, length);
 }
 
+// What the nodes of a block and its owner have come.
+float way_of(uint block) {
+    if ((push.flags & carry_ways) == 0u) return 0.0f;
+    Ways ways = push.memory.at[0].ways;
+    const float q = float(push.map_size) / push.epsilon;
+    float way = way_length(ways.at[block], q);
+    if (block != push.blocks) way += way_length(ways.at[bsh_owner_of(block, push.leaves, push.blocks) >> 3], q);
+    return way;
+}
+
 Evaluation evaluate(uint block, View view) {
     Evaluation e = Evaluation(0u, true, 1e30f, 0.0f);
     const uint height = bsh_height(8u * block, push.leaves, push.blocks);

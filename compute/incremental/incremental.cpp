@@ -12,6 +12,28 @@ constexpr uint64_t carried_words = sizeof(CarriedState) / sizeof(uint);
 
 }  // namespace
 
+BoundsTravel::BoundsTravel(engine::Device& device) : device_(device), shift_(device, compute_kernels, "incremental/shift") {}
+
+void BoundsTravel::record(engine::Recorder& recorder, const Bsh& tree) {
+    if (tree.empty() || tree.bounds_version() == seen_) return;
+    const uint32_t blocks = tree.blocks() + 1;  // with the one over the root
+    if (since_ == 0) {
+        since_ = tree.bounds_version();
+        if (ways_.count() != blocks) {
+            frames_ = {device_, "lists", "frames before", blocks};
+            spheres_ = {device_, "lists", "spheres before", tree.slots()};
+            ways_ = {device_, "lists", "ways of blocks", blocks};
+        }
+    }
+    seen_ = tree.bounds_version();
+    const BshRef now = tree.read(recorder);
+    recorder.dispatch(shift_,
+                      ShiftPush{.frames = now.frames, .spheres = now.spheres, .frames_before = recorder.write(frames_),
+                                .spheres_before = recorder.write(spheres_), .ways = recorder.write(ways_), .count = blocks,
+                                .first = seen_ == since_ ? 1u : 0u},
+                      blocks);
+}
+
 CarriedCut::CarriedCut(engine::Device& device, AppendMode mode, uint64_t capacity, uint32_t first_view, uint32_t views)
     : first_view_(first_view), views_(views), lists_(device, mode, capacity, capacity), restart_(device, compute_kernels, "incremental/restart"),
       travel_(device, compute_kernels, "incremental/travel"), place_(device, compute_kernels, "incremental/place"),
@@ -30,18 +52,19 @@ uint64_t CarriedCut::bytes(const engine::Device& device, AppendMode mode, uint64
 }
 
 // All of it is written, as far as barriers go: the frame's steps follow one another anyway.
-Ref<CarriedRefs> CarriedCut::memory(engine::Recorder& recorder) {
+Ref<CarriedRefs> CarriedCut::memory(engine::Recorder& recorder, const BoundsTravel* bounds) {
     refs_.span()[0] = {.codes = recorder.write(lists_.kept()),
                        .dues = recorder.write(dues_),
                        .free = recorder.write(free_),
                        .found = recorder.write(found_),
                        .travels = recorder.write(travels_),
                        .before = recorder.write(before_),
-                       .state = {recorder.write(state_words_).address}};
+                       .state = {recorder.write(state_words_).address},
+                       .ways = bounds ? recorder.read(bounds->ways()) : Ways{}};
     return recorder.read(refs_);
 }
 
-void CarriedCut::record(engine::Recorder& recorder, const ManyLodsInputs& in, const CarrySettings& settings) {
+void CarriedCut::record(engine::Recorder& recorder, const ManyLodsInputs& in, const CarrySettings& settings, const BoundsTravel* bounds) {
     assert(in.first_view == first_view_ && in.limit == views_ && first_view_ + views_ <= cut_max_views && in.tree.blocks() < cut_max_blocks);
     if (in.tree.empty()) {
         lists_.begin(recorder, due_kernel_, in.view_count, 0, 0);
@@ -50,7 +73,7 @@ void CarriedCut::record(engine::Recorder& recorder, const ManyLodsInputs& in, co
         return;
     }
     const auto travel = [&] {
-        return TravelPush{.views = recorder.read(in.views), .count = recorder.read(in.view_count), .memory = memory(recorder),
+        return TravelPush{.views = recorder.read(in.views), .count = recorder.read(in.view_count), .memory = memory(recorder, bounds),
                           .first_view = first_view_, .limit = views_, .over_root = in.tree.blocks()};
     };
     const bool from_roots = !started_;
@@ -58,16 +81,20 @@ void CarriedCut::record(engine::Recorder& recorder, const ManyLodsInputs& in, co
     started_ = true;
     recorder.dispatch(travel_, travel(), views_);
 
-    uint flags = settings.everything || in.tree.bounds_version() != bounds_version_ ? carry_all : 0u;
+    assert(!bounds || bounds->since() > 0);
+    const bool moved = in.tree.bounds_version() != bounds_version_;
+    const bool known = bounds && bounds->since() <= bounds_version_;  // how far they moved since the last frame
+    uint flags = settings.everything || (moved && !known) ? carry_all : 0u;
+    if (bounds) flags |= carry_ways | (moved ? carry_bounds : 0u);
     bounds_version_ = in.tree.bounds_version();
     const auto push = [&](const AppendRef& ref) {
         const BshRef tree = in.tree.read(recorder);
         return CarryPush{.lists = ref, .frames = tree.frames, .spheres = tree.spheres, .views = recorder.read(in.views),
-                         .memory = memory(recorder), .leaves = tree.leaves, .blocks = tree.blocks, .epsilon = in.epsilon,
+                         .memory = memory(recorder, bounds), .leaves = tree.leaves, .blocks = tree.blocks, .epsilon = in.epsilon,
                          .map_size = in.map_size, .first_view = first_view_, .flags = flags};
     };
     const auto place = [&](uint close) {
-        recorder.dispatch(place_, PlacePush{.lists = lists_.write_state(recorder), .memory = memory(recorder),
+        recorder.dispatch(place_, PlacePush{.lists = lists_.write_state(recorder), .memory = memory(recorder, bounds),
                                             .capacity = uint(lists_.kept_capacity()), .close = close}, 1);
     };
     lists_.begin(recorder, due_kernel_, state_words_, 0, uint32_t(lists_.kept_capacity()), 0);

@@ -6,6 +6,30 @@
 
 namespace myriad::compute {
 
+// How far the nodes of a tree's blocks have come, frame after frame: what refits cost carried cuts. For trees that move; it keeps their spheres
+// of the frame before. 144 bytes a block read, 80 written where it changed.
+class BoundsTravel {
+public:
+    explicit BoundsTravel(engine::Device& device);
+
+    // In every frame, before the cuts that are carried through this tree. Records nothing where the tree was not refitted.
+    void record(engine::Recorder& recorder, const Bsh& tree);
+    // For a tree that was built anew: sums begin again.
+    void restart() { seen_ = since_ = 0; }
+
+    const engine::Array<Way>& ways() const { return ways_; }
+    // The version of the bounds at which the sums began; 0: they have not.
+    uint64_t since() const { return since_; }
+
+private:
+    engine::Device& device_;
+    engine::Program shift_;
+    uint64_t since_ = 0, seen_ = 0;  // versions of the bounds
+    engine::Array<vec4> frames_;
+    engine::Array<uvec2> spheres_;
+    engine::Array<Way> ways_;
+};
+
 // What a frame did to a carried cut; read after the submission.
 struct CarryReport {
     AppendReport lists;                    // `processed` counts node-views evaluated, nine an item, `kept` is the length of the list
@@ -30,8 +54,9 @@ public:
     void restart() { started_ = false; }
 
     // Brings the cut up to date. `in` names the same tree, range of views, epsilon and map size in every frame. After a frame whose lists
-    // are not ok() the cut is void: it takes a longer list.
-    void record(engine::Recorder& recorder, const ManyLodsInputs& in, const CarrySettings& settings);
+    // are not ok() the cut is void: it takes a longer list. `bounds`, if any, must have been recorded in this frame before; where it does not
+    // reach back to the last frame, a tree that was refitted makes every item due.
+    void record(engine::Recorder& recorder, const ManyLodsInputs& in, const CarrySettings& settings, const BoundsTravel* bounds = nullptr);
 
     // The cut for those who draw it: its kept list holds the groups, and holes that draw nothing.
     const AppendLists& lists() const { return lists_; }
@@ -40,7 +65,7 @@ public:
     static uint64_t bytes(const engine::Device& device, AppendMode mode, uint64_t capacity, uint32_t views);
 
 private:
-    Ref<CarriedRefs> memory(engine::Recorder& recorder);
+    Ref<CarriedRefs> memory(engine::Recorder& recorder, const BoundsTravel* bounds);
 
     uint32_t first_view_, views_;
     bool started_ = false;

@@ -34,11 +34,14 @@ struct CarriedRefs {
     Travels travels;      // by view, of this list's
     Views before;         // by view: where it was last frame
     CarriedStates state;
+    Ways ways;            // by block, where bounds move
 };
 MYRIAD_ARRAY(CarriedRefsArray, CarriedRefs, 8)
 
-const uint carry_all = 1u;   // evaluate every item
-const uint carry_last = 2u;  // lazy: no further step follows; what should be opened stays in the cut
+const uint carry_all = 1u;     // evaluate every item
+const uint carry_ways = 2u;    // bounds move: there are ways
+const uint carry_bounds = 4u;  // they have since the last frame
+const uint carry_last = 8u;    // lazy: no further step follows; what should be opened stays in the cut
 
 // All kernels but "travel", "restart" and "place".
 struct CarryPush {
@@ -61,6 +64,17 @@ struct TravelPush {
     CarriedRefsArray memory;
     uint first_view, limit;
     uint over_root;        // restart: the block that the root is alone in
+};
+
+// "incremental/shift": one invocation a block.
+struct ShiftPush {
+    Float4s frames;        // of the tree, as in BshRef
+    Uint2s spheres;
+    Float4s frames_before; // as they were in the last frame
+    Uint2s spheres_before;
+    Ways ways;
+    uint count;
+    uint first;            // 1: there was no last frame, ways begin
 };
 
 // "incremental/place": one invocation, after "update" (close: 0) and at the end of a frame (1).

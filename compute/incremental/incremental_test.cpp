@@ -74,13 +74,15 @@ protected:
         CarryReport report;
     };
     // One frame of views [0, views.size()) of at most `most`.
-    Frame run(CarriedCut& cut, const std::vector<View>& views, uint32_t most, const CarrySettings& settings, float epsilon, uint map_size) {
+    Frame run(CarriedCut& cut, const std::vector<View>& views, uint32_t most, const CarrySettings& settings, float epsilon, uint map_size,
+              BoundsTravel* travel = nullptr) {
         std::vector<View> all = views;
         all.resize(std::max<size_t>(most, 1), {vec3(7), 1, vec3(1, 0, 0), 0});
         const auto on = on_device(all);
         const auto count = on_device(std::vector<uint>{uint(views.size())});
         engine::Recorder recorder(device);
-        cut.record(recorder, {*tree, on, count, 0, most, epsilon, map_size}, settings);
+        if (travel) travel->record(recorder, *tree);
+        cut.record(recorder, {*tree, on, count, 0, most, epsilon, map_size}, settings, travel);
         recorder.submit_and_wait();
         Frame frame{{}, cut.report()};
         frame.groups = engine::download(device, cut.lists().kept(), std::min<uint64_t>(frame.report.lists.kept, cut.lists().kept_capacity()));
@@ -109,7 +111,8 @@ TEST_F(IncrementalTest, slack_is_not_exceeded_by_what_moves_less) {
         const uint where = classify(v, s, height, epsilon, uint(size));
         const float slack = node_slack(v, d, length, s.radius, height, where, q);
         Travel t{log_uniform(1e-6f, 10), log_uniform(1e-6f, 10), travel_exists};
-        const Due due = due_after(t, slack, length);
+        Way way{log_uniform(1e-6f, 10), log_uniform(1e-6f, 1)};
+        const Due due = due_after(t, way_length(way, q), slack, length);
         View moving = v;
         for (int step = 0; step < 4; ++step) {
             View now = moving;
@@ -118,9 +121,16 @@ TEST_F(IncrementalTest, slack_is_not_exceeded_by_what_moves_less) {
             if (random() % 3) now.direction = glm::normalize(now.direction + glm::normalize(point()) * (far / length));
             t = travel_on(t, moving, true, now, true);
             moving = now;
+            if (random() % 3 == 0) {  // the node goes its way too
+                const Sphere before = s;
+                s.center += glm::normalize(point()) * far;
+                s.radius = std::max(0.0f, s.radius + uniform() * far / q);
+                way = way_on(way, glm::length(s.center - before.center), std::abs(s.radius - before.radius));
+                t.flags |= travel_moved;
+            }
             const bool side = classify(now, s, height, epsilon, uint(size)) != where;
             changed += side;
-            if (is_due(due, t)) break;
+            if (is_due(due, t, way_length(way, q), (t.flags & travel_moved) != 0)) break;
             ++used;
             worth += (t.flags & travel_moved) != 0;
             ASSERT_FALSE(side) << i << ": " << where << " slack " << slack << " distance " << length << " radius " << s.radius;
@@ -160,6 +170,31 @@ TEST_F(IncrementalTest, follows_the_basic_cut_through_random_frames) {
         EXPECT_LT(evaluated, needed / 2) << "half of the views hardly move";
         EXPECT_GT(reused, 20u);
     }
+}
+
+// Where a part of the geometry moves, only what is above it and near a threshold is looked at again.
+TEST_F(IncrementalTest, follows_geometry_that_moves_in_part) {
+    soup(150, 9);
+    const uint32_t most = 16;
+    CarriedCut cut(device, AppendMode::scan, 1 << 14, 0, most);
+    BoundsTravel travel(device);
+    std::vector<View> views = random_views(most);
+    uint64_t evaluated = 0, needed = 0;
+    for (int f = 0; f < 250; ++f) {
+        SCOPED_TRACE(f);
+        if (f % 3 == 0) for (View& v : views) move(v);
+        if (f % 5 != 4) {  // rests at times
+            const size_t part = random() % 100 * 3;
+            const float far = log_uniform(1e-6f, f % 10 ? 0.02f : 0.5f);
+            for (size_t i = part; i < part + 60; ++i) positions[i] += f % 2 ? vec3(0, far, 0) : vec3(point(far));
+            refit();
+        }
+        const Frame frame = run(cut, views, most, {}, 1, 16, &travel);
+        const CutRef expected = cut_ref(host, views, 1, 16);
+        ASSERT_TRUE(same(expected.cut, cut_of(frame, views.size())));
+        if (f > 0) evaluated += frame.report.lists.processed, needed += expected.tested;
+    }
+    EXPECT_LT(evaluated, needed / 2);
 }
 
 // 3.3: the twin evaluates everything in every frame, the device what is due; the cuts are the same.

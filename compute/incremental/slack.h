@@ -7,9 +7,13 @@
 // In the open region |d.x| + t stays below q r as long as |d.x| + L + 2 |dp| does, or, since t is concave in L, as long as |d.x| + t +
 // (1 + L / t) |dp| does. Below q = 2 there is no slack.
 //
-// What a view has travelled is summed up in two numbers, metres moved and radians (chords) turned. An item's due is
-//     moved + reach turned + slack     at the time it was evaluated, with |d| <= reach until then,
-// and it is due when moved + reach turned has come that far. Sums are rounded up, dues down.
+// Bounds move too: a centre like the view itself; a radius changes f by about |dr|, and g by at most (q + r / t) |dr|, which of a slack takes at
+// most (q / 2 + 1) |dr| (t is concave in L and r together).
+//
+// What a view has travelled is summed up in two numbers, metres moved and radians (chords) turned; what the nodes of a block have, in two
+// more, metres of centres and of radii. An item's due is
+//     moved + reach turned + ways + slack     at the time it was evaluated, with |d| <= reach until then,
+// and it is due when the sum without the slack has come that far. Sums are rounded up, dues down.
 #ifndef MYRIAD_COMPUTE_SLACK_H
 #define MYRIAD_COMPUTE_SLACK_H
 
@@ -57,9 +61,29 @@ MYRIAD_FN Travel travel_on(Travel t, View before, bool existed, View now, bool e
     return t;
 }
 
-// The same in every kernel, so that an item of a view that rests is exactly where it was.
-MYRIAD_FN float travelled(Travel t, float reach) {
-    MYRIAD_PRECISE const float sum = t.moved + reach * t.turned;
+// Metres that the nodes of a block have come: the most of any centre, and of any radius.
+struct Way {
+    float centers, radii;
+};
+MYRIAD_ARRAY(Ways, Way, 8)
+
+// What it takes of a slack.
+MYRIAD_FN float way_length(Way w, float q) {
+    MYRIAD_PRECISE const float sum = w.centers + (0.5f * q + 1.0f) * w.radii;
+    return sum;
+}
+
+// A block's nodes go on: from `before` to `now` each.
+MYRIAD_FN Way way_on(Way w, float centers, float radii) {
+    if (!(centers + radii > 0.0f)) return w;
+    w.centers = next_up(w.centers + (centers * (1.0f + slack_rounding) + 1e-18f));
+    w.radii = next_up(w.radii + radii);
+    return w;
+}
+
+// The same in every kernel, so that an item at rest is exactly where it was. `way`: what its nodes have come.
+MYRIAD_FN float travelled(Travel t, float reach, float way) {
+    MYRIAD_PRECISE const float sum = t.moved + reach * t.turned + way;
     return sum;
 }
 
@@ -81,16 +105,17 @@ MYRIAD_FN float node_slack(View view, vec3 d, float length, float r, uint height
 }
 
 // When an item of least slack `slack` is due, whose nodes' centres are within `reach`.
-MYRIAD_FN Due due_after(Travel t, float slack, float reach) {
+MYRIAD_FN Due due_after(Travel t, float way, float slack, float reach) {
     Due due;
     due.reach = (reach + max(slack, 0.0f)) * (1.0f + slack_rounding);
-    const float now = travelled(t, due.reach);
+    const float now = travelled(t, due.reach, way);
     due.at = max(now, now + slack - (now + abs(slack)) * slack_rounding);
     return due;
 }
-MYRIAD_FN bool is_due(Due due, Travel t) {
+// `moved`: whether the view or the nodes have since the last frame.
+MYRIAD_FN bool is_due(Due due, Travel t, float way, bool moved) {
     if ((t.flags & travel_jumped) != 0u || due.at < 0.0f) return true;
-    return (t.flags & travel_moved) != 0u && !(travelled(t, due.reach) < due.at);
+    return moved && !(travelled(t, due.reach, way) < due.at);
 }
 MYRIAD_END
 

@@ -32,7 +32,7 @@ void main() {
         if (e.open) {
             found = e.found & (old << 16);
             memory.codes.at[item] = cut_pack(group.block, group.view, e.found & 0xffffu);
-            memory.dues.at[item] = due_after(t, e.slack, e.reach);
+            memory.dues.at[item] = due_after(t, way_of(group.block), e.slack, e.reach);
         } else {
             found = dropped;
         }

@@ -91,7 +91,12 @@ void ViewMaps::record(engine::Recorder& recorder, const MapScene& scene, const e
         }
         carried_now_ = carried_[index].get();
         auto scope = recorder.scope("cut");
-        carried_now_->record(recorder, cut, {.everything = settings_.revalidate, .edges = settings_.update == CutUpdate::lazy ? settings_.lazy_edges : 0});
+        if (tree.moving_blocks() > 0) {
+            if (!bounds_travel_) bounds_travel_.emplace(device_);
+            bounds_travel_->record(recorder, tree);
+        }
+        carried_now_->record(recorder, cut, {.everything = settings_.revalidate, .edges = settings_.update == CutUpdate::lazy ? settings_.lazy_edges : 0},
+                             bounds_travel_ ? &*bounds_travel_ : nullptr);
     }
     auto scope = recorder.scope("splat");
     splat_->record(recorder, {*lists(), tree, views, first, settings_.map_size}, atlas_);

@@ -84,6 +84,7 @@ public:
     void forget() {
         for (const auto& cut : carried_)
             if (cut) cut->restart();
+        if (bounds_travel_) bounds_travel_->restart();
     }
     MapCounters take_counters() { return std::exchange(counters_, {}); }
 
@@ -105,6 +106,7 @@ private:
     std::optional<SplatPass> splat_;
     std::optional<compute::AppendLists> lists_;                  // basic
     std::vector<std::unique_ptr<compute::CarriedCut>> carried_;  // incremental and lazy: one a batch
+    std::optional<compute::BoundsTravel> bounds_travel_;         // where the tree moves
     compute::CarriedCut* carried_now_ = nullptr;                 // of the batch that was recorded last
     std::optional<BrutePass> brute_;
     std::optional<IsmPass> ism_;
