@@ -300,6 +300,11 @@ Device::Device(const DeviceOptions& options) : callbacks_(std::make_unique<Callb
 }
 
 Device::~Device() {
+    for (const CommandSet& set : idle_commands_) {
+        vkDestroyQueryPool(device_, set.queries, nullptr);
+        vkDestroyFence(device_, set.fence, nullptr);
+        vkDestroyCommandPool(device_, set.pool, nullptr);
+    }
     for (auto& [key, making] : pipelines_) try {
             if (making.wait_for(std::chrono::seconds(0)) == std::future_status::deferred) continue;  // nobody has asked for it
             const Pipeline& pipeline = making.get();

@@ -45,6 +45,14 @@ struct Pipeline {
     uint32_t workgroup_size = 0, push_constant_bytes = 0;
 };
 
+// What a recorder records into, waits for and measures with.
+struct CommandSet {
+    VkCommandPool pool = VK_NULL_HANDLE;
+    VkCommandBuffer commands = VK_NULL_HANDLE;
+    VkFence fence = VK_NULL_HANDLE;
+    VkQueryPool queries = VK_NULL_HANDLE;  // none where the queue has no timestamps
+};
+
 class Device {
 public:
     // Throws DeviceError in one sentence when there is no loader, no device, or none that is sufficient.
@@ -87,6 +95,11 @@ public:
     // The pipelines asked for so far, by name and constants, made or in the making; they live as long as the device.
     std::map<std::string, std::shared_future<Pipeline>>& pipelines() { return pipelines_; }
 
+    // Recorders come and go, one a download; what they record into stays. Khronos' layer 1.3.239 (Debian 12) also needs that: it forgets a command
+    // buffer's labels on a thread of its own, unlocked, and a new one with the same handle is recorded beside that (Vulkan-ValidationLayers
+    // #5172, mended in #5312): a heap corrupted once in a few thousand recorders.
+    std::vector<CommandSet>& idle_commands() { return idle_commands_; }
+
 private:
     struct Callbacks;
     std::unique_ptr<Callbacks> callbacks_;
@@ -102,6 +115,7 @@ private:
     double timestamp_period_ns_ = 0;
     uint64_t memory_limit_ = 0, memory_now_ = 0;
     std::map<std::string, MemoryUse> memory_;
+    std::vector<CommandSet> idle_commands_;
     std::map<std::string, std::shared_future<Pipeline>> pipelines_;
 };
 

@@ -4,40 +4,51 @@
 
 namespace myriad::engine {
 
-Recorder::Recorder(Device& device) : device_(device) {
+namespace {
+
+CommandSet new_command_set(const Device& device, uint32_t queries) {
+    CommandSet set;
     VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
     pool.queueFamilyIndex = device.queue_family();
-    check(vkCreateCommandPool(device.handle(), &pool, nullptr, &pool_), "creating a command pool");
+    check(vkCreateCommandPool(device.handle(), &pool, nullptr, &set.pool), "creating a command pool");
     VkCommandBufferAllocateInfo allocate{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
-    allocate.commandPool = pool_;
+    allocate.commandPool = set.pool;
     allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
     allocate.commandBufferCount = 1;
-    check(vkAllocateCommandBuffers(device.handle(), &allocate, &commands_), "allocating a command buffer");
+    check(vkAllocateCommandBuffers(device.handle(), &allocate, &set.commands), "allocating a command buffer");
     VkFenceCreateInfo fence{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
-    check(vkCreateFence(device.handle(), &fence, nullptr, &fence_), "creating a fence");
+    check(vkCreateFence(device.handle(), &fence, nullptr, &set.fence), "creating a fence");
     if (device.timestamp_period_ns() > 0) {
-        VkQueryPoolCreateInfo queries{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
-        queries.queryType = VK_QUERY_TYPE_TIMESTAMP;
-        queries.queryCount = max_queries;
-        check(vkCreateQueryPool(device.handle(), &queries, nullptr, &queries_), "creating a query pool");
-        device.set_name(VK_OBJECT_TYPE_QUERY_POOL, reinterpret_cast<uint64_t>(queries_), "pass times");
+        VkQueryPoolCreateInfo info{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
+        info.queryType = VK_QUERY_TYPE_TIMESTAMP;
+        info.queryCount = queries;
+        check(vkCreateQueryPool(device.handle(), &info, nullptr, &set.queries), "creating a query pool");
+        device.set_name(VK_OBJECT_TYPE_QUERY_POOL, reinterpret_cast<uint64_t>(set.queries), "pass times");
     }
-    device.set_name(VK_OBJECT_TYPE_COMMAND_BUFFER, reinterpret_cast<uint64_t>(commands_), "frame");
+    device.set_name(VK_OBJECT_TYPE_COMMAND_BUFFER, reinterpret_cast<uint64_t>(set.commands), "frame");
+    return set;
+}
+
+}  // namespace
+
+Recorder::Recorder(Device& device) : device_(device) {
+    if (device.idle_commands().empty()) {
+        set_ = new_command_set(device, max_queries);
+    } else {
+        set_ = device.idle_commands().back();
+        device.idle_commands().pop_back();
+    }
     begin();
 }
 
-Recorder::~Recorder() {
-    vkDestroyQueryPool(device_.handle(), queries_, nullptr);
-    vkDestroyFence(device_.handle(), fence_, nullptr);
-    vkDestroyCommandPool(device_.handle(), pool_, nullptr);
-}
+Recorder::~Recorder() { device_.idle_commands().push_back(set_); }
 
 void Recorder::begin() {
-    check(vkResetCommandPool(device_.handle(), pool_, 0), "resetting a command pool");
+    check(vkResetCommandPool(device_.handle(), set_.pool, 0), "resetting a command pool");
     VkCommandBufferBeginInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-    check(vkBeginCommandBuffer(commands_, &info), "beginning a command buffer");
-    if (queries_) vkCmdResetQueryPool(commands_, queries_, 0, max_queries);
+    check(vkBeginCommandBuffer(set_.commands, &info), "beginning a command buffer");
+    if (set_.queries) vkCmdResetQueryPool(set_.commands, set_.queries, 0, max_queries);
     next_query_ = 0;
     declared_.clear();
     pending_.clear();
@@ -72,7 +83,7 @@ void Recorder::synchronise() {
         VkDependencyInfo dependency{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
         dependency.memoryBarrierCount = 1;
         dependency.pMemoryBarriers = &barrier;
-        vkCmdPipelineBarrier2(commands_, &dependency);
+        vkCmdPipelineBarrier2(set_.commands, &dependency);
         pending_.clear();
     }
     pending_.insert(pending_.end(), declared_.begin(), declared_.end());
@@ -90,25 +101,25 @@ void Recorder::record(const Program& program, const void* push, size_t bytes, si
         return;
     }
     synchronise();
-    device_.begin_label(commands_, program.name().c_str());
-    vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, program.pipeline());
-    vkCmdPushConstants(commands_, program.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, (program.push_constant_bytes() + 3) & ~3u, push);
+    device_.begin_label(set_.commands, program.name().c_str());
+    vkCmdBindPipeline(set_.commands, VK_PIPELINE_BIND_POINT_COMPUTE, program.pipeline());
+    vkCmdPushConstants(set_.commands, program.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, (program.push_constant_bytes() + 3) & ~3u, push);
     if (args) {
-        vkCmdDispatchIndirect(commands_, args->handle(), index * sizeof(DispatchArgs));
+        vkCmdDispatchIndirect(set_.commands, args->handle(), index * sizeof(DispatchArgs));
     } else {
         const uint64_t groups = (threads + program.workgroup_size() - 1) / program.workgroup_size();
         assert(groups < uint64_t(65535) * 65535);
         const DispatchArgs grid = grid_of(uint32_t(groups));
-        vkCmdDispatch(commands_, grid.x, grid.y, grid.z);
+        vkCmdDispatch(set_.commands, grid.x, grid.y, grid.z);
     }
-    device_.end_label(commands_);
+    device_.end_label(set_.commands);
 }
 
 void Recorder::fill(const Buffer& buffer, uint32_t value, uint64_t offset, uint64_t bytes) {
     if (bytes == 0) return;
     use(buffer, true);
     synchronise();
-    vkCmdFillBuffer(commands_, buffer.handle(), offset, bytes, value);
+    vkCmdFillBuffer(set_.commands, buffer.handle(), offset, bytes, value);
 }
 
 void Recorder::copy(const Buffer& from, const Buffer& to, uint64_t bytes, uint64_t from_offset, uint64_t to_offset) {
@@ -117,20 +128,20 @@ void Recorder::copy(const Buffer& from, const Buffer& to, uint64_t bytes, uint64
     use(to, true);
     synchronise();
     const VkBufferCopy region{from_offset, to_offset, bytes};
-    vkCmdCopyBuffer(commands_, from.handle(), to.handle(), 1, &region);
+    vkCmdCopyBuffer(set_.commands, from.handle(), to.handle(), 1, &region);
 }
 
 Recorder::Scope::Scope(Recorder& recorder, std::string name) : recorder_(recorder), index_(recorder.times_.size()) {
     PassTime time;
     time.name = std::move(name);
     time.cpu_begin_ms = recorder.now_ms();
-    recorder.device_.begin_label(recorder.commands_, time.name.c_str());
+    recorder.device_.begin_label(recorder.set_.commands, time.name.c_str());
     recorder.times_.push_back(std::move(time));
     // Later scopes go untimed rather than unrecorded when the pool of one submission is used up.
-    const bool queried = recorder.queries_ && recorder.next_query_ + 2 <= max_queries;
+    const bool queried = recorder.set_.queries && recorder.next_query_ + 2 <= max_queries;
     recorder.scopes_.push_back({index_, recorder.next_query_, queried});
     if (queried) {
-        vkCmdWriteTimestamp2(recorder.commands_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, recorder.queries_, recorder.next_query_);
+        vkCmdWriteTimestamp2(recorder.set_.commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, recorder.set_.queries, recorder.next_query_);
         recorder.next_query_ += 2;
     }
 }
@@ -140,8 +151,8 @@ Recorder::Scope::~Scope() {
     time.cpu_ms = recorder_.now_ms() - time.cpu_begin_ms;
     for (const OpenScope& open : recorder_.scopes_)
         if (open.time == index_ && open.queried)
-            vkCmdWriteTimestamp2(recorder_.commands_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, recorder_.queries_, open.first_query + 1);
-    recorder_.device_.end_label(recorder_.commands_);
+            vkCmdWriteTimestamp2(recorder_.set_.commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, recorder_.set_.queries, open.first_query + 1);
+    recorder_.device_.end_label(recorder_.set_.commands);
 }
 
 double Recorder::warm_up() {
@@ -154,10 +165,10 @@ double Recorder::warm_up() {
     synchronise();
     for (const auto& [key, made] : device_.pipelines()) {
         const Pipeline& pipeline = made.get();
-        vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.pipeline);
+        vkCmdBindPipeline(set_.commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.pipeline);
         if (pipeline.push_constant_bytes)
-            vkCmdPushConstants(commands_, pipeline.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, (pipeline.push_constant_bytes + 3) & ~3u, zeros.data());
-        vkCmdDispatchIndirect(commands_, nothing.handle(), 0);
+            vkCmdPushConstants(set_.commands, pipeline.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, (pipeline.push_constant_bytes + 3) & ~3u, zeros.data());
+        vkCmdDispatchIndirect(set_.commands, nothing.handle(), 0);
     }
     submit_and_wait();
     return now_ms() - start;
@@ -173,21 +184,21 @@ void Recorder::submit_and_wait() {
     VkDependencyInfo dependency{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
     dependency.memoryBarrierCount = 1;
     dependency.pMemoryBarriers = &barrier;
-    vkCmdPipelineBarrier2(commands_, &dependency);
-    check(vkEndCommandBuffer(commands_), "ending a command buffer");
+    vkCmdPipelineBarrier2(set_.commands, &dependency);
+    check(vkEndCommandBuffer(set_.commands), "ending a command buffer");
 
     VkCommandBufferSubmitInfo commands{VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO};
-    commands.commandBuffer = commands_;
+    commands.commandBuffer = set_.commands;
     VkSubmitInfo2 submit{VK_STRUCTURE_TYPE_SUBMIT_INFO_2};
     submit.commandBufferInfoCount = 1;
     submit.pCommandBufferInfos = &commands;
-    check(vkQueueSubmit2(device_.queue(), 1, &submit, fence_), "submitting work");
-    check(vkWaitForFences(device_.handle(), 1, &fence_, VK_TRUE, UINT64_MAX), "waiting for the device");
-    check(vkResetFences(device_.handle(), 1, &fence_), "resetting a fence");
+    check(vkQueueSubmit2(device_.queue(), 1, &submit, set_.fence), "submitting work");
+    check(vkWaitForFences(device_.handle(), 1, &set_.fence, VK_TRUE, UINT64_MAX), "waiting for the device");
+    check(vkResetFences(device_.handle(), 1, &set_.fence), "resetting a fence");
 
     if (next_query_) {
         std::vector<uint64_t> ticks(next_query_);
-        check(vkGetQueryPoolResults(device_.handle(), queries_, 0, next_query_, ticks.size() * sizeof(uint64_t), ticks.data(),
+        check(vkGetQueryPoolResults(device_.handle(), set_.queries, 0, next_query_, ticks.size() * sizeof(uint64_t), ticks.data(),
                                     sizeof(uint64_t), VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
               "reading timestamps");
         if (!gpu_epoch_) gpu_epoch_ = ticks[0];

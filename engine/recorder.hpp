@@ -99,10 +99,7 @@ private:
     static constexpr uint32_t max_queries = 2048;
 
     Device& device_;
-    VkCommandPool pool_ = VK_NULL_HANDLE;
-    VkCommandBuffer commands_ = VK_NULL_HANDLE;
-    VkFence fence_ = VK_NULL_HANDLE;
-    VkQueryPool queries_ = VK_NULL_HANDLE;
+    CommandSet set_;
     uint32_t next_query_ = 0;
     std::vector<Access> declared_;  // for the next command
     std::vector<Access> pending_;   // since the last barrier
