@@ -48,6 +48,7 @@ ordered_json counters_json(const FrameRun& frame) {
             counters["node_views"] = maps->node_views;
             counters["cut"] = maps->cut;
             if (maps->invalid) counters["cut_invalid"] = maps->invalid;
+            if (maps->maps_drawn) counters["maps_drawn"] = *maps->maps_drawn;
             counters["cut_groups"] = maps->groups;
             counters["list_capacity"] = maps->list_capacity;
             counters["list_peak"] = maps->list_peak;

@@ -102,6 +102,11 @@ void Bsh::find_moving() {
     moving_ = {};
     moving_ = engine::upload(device_, "scene", "BSH blocks that move", moving.blocks);
     moving_ends_ = moving.ends;
+    std::vector<uint> of_tree;
+    for (size_t level = 0; level < levels_.size(); ++level)
+        while (of_tree.size() < moving.ends[level]) of_tree.push_back(levels_[level].first_block() + moving.blocks[of_tree.size()]);
+    moving_tree_ = {};
+    moving_tree_ = engine::upload(device_, "scene", "moving blocks of the BSH", of_tree);
 }
 
 void Bsh::refit(engine::Recorder& recorder, const engine::Array<vec3>& positions, const engine::Array<uvec4>& triangles,
@@ -118,6 +123,7 @@ void Bsh::record(engine::Recorder& recorder, const engine::Array<vec3>& position
                  const engine::Array<Instance>* instances, const OpacityReader& opacity, bool moving) {
     assert((!shared_ || instances) && (!blends_ || opacity));
     ++bounds_version_;
+    if (!moving) all_bounds_version_ = bounds_version_;
     for (size_t i = 0; i < levels_.size(); ++i) {
         const BshLevel& level = levels_[i];
         const uint first = moving && i > 0 ? moving_ends_[i - 1] : 0, listed = moving ? moving_ends_[i] - first : 0;

@@ -68,6 +68,7 @@ public:
 
     // Goes up with each refit: who keeps something made of the bounds compares.
     uint64_t bounds_version() const { return bounds_version_; }
+    uint64_t all_bounds_version() const { return all_bounds_version_; }         // of the last that was of all blocks
 
     bool empty() const { return levels_.empty(); }
     uint leaves() const { return empty() ? 0 : levels_.front().nodes; }
@@ -86,6 +87,7 @@ public:
     const engine::Array<uvec2>& boxes() const { return boxes_; }
     uint64_t bytes() const;
     uint moving_blocks() const { return uint(moving_.count()); }                // that refit_moving visits
+    const engine::Array<uint>& moving() const { return moving_tree_; }          // which they are
 
 private:
     void record(engine::Recorder& recorder, const engine::Array<vec3>& positions, const engine::Array<uvec4>& triangles,
@@ -97,7 +99,7 @@ private:
     engine::Program leaves_, inner_, quality_;
     uint rebuilds_ = 0;
     uint depth_ = 0;
-    uint64_t bounds_version_ = 0;
+    uint64_t bounds_version_ = 0, all_bounds_version_ = 0;
     bool shared_, blends_;
     std::vector<BshLevel> levels_;
     float sample_radius_ = 0;
@@ -109,6 +111,7 @@ private:
     engine::Array<vec2> sums_;                 // of measure
     std::vector<uint8_t> leaf_moves_;          // by leaf, where any does
     engine::Array<uint> moving_;               // blocks, level after level, each level's counted from its first
+    engine::Array<uint> moving_tree_;          // the same, counted from the tree's first
     std::vector<uint> moving_ends_;            // in it, of the levels
 };
 

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Sorts out the items that are due: those that a moved view may have brought to another side of the criterion or of the frustum.
+// Sorts out the items that are due: those that a view or bounds that moved may have brought to another side of the criterion or of the frustum.
+// Of a view that rests it reads the item's code, and whether its block moved.
 #include "compute/incremental/evaluate.glsl"
 
 void main() {
@@ -11,9 +12,12 @@ void main() {
         const uvec2 code = memory.codes.at[item];
         if (!cut_is_hole(code)) {
             const CutGroup group = cut_unpack(code);
-            const Travel t = memory.travels.at[group.view - push.first_view];
-            const bool moved = (t.flags & travel_moved) != 0u || (push.flags & carry_bounds) != 0u;
-            found = (push.flags & carry_all) != 0u || is_due(memory.dues.at[item], t, way_of(group.block), moved) ? 1u : 0u;
+            const uint view = group.view - push.first_view;
+            const Travel t = memory.travels.at[view];
+            const Shift shift = shift_of(group.block);
+            if (shift.own && group.drawn != 0u) memory.changed.at[view] = 1u;
+            if ((push.flags & carry_all) != 0u) found = 1u;
+            else if (travel_stirs(t) || shift.any) found = is_due(memory.dues.at[item], t, shift.way) ? 1u : 0u;
         }
     }
     found = append_payload(item, found, push.lists);

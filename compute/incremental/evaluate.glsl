@@ -23,14 +23,26 @@ void look(inout Evaluation e, View view, vec3 d, float r, uint height, uint wher
     e.reach = max(e.reach, length);
 }
 
-// What the nodes of a block and its owner have come.
-float way_of(uint block) {
-    if ((push.flags & carry_ways) == 0u) return 0.0f;
+// What the nodes of a block and its owner have come, and whether they did since the last frame.
+struct Shift {
+    float way;
+    bool own, any;
+};
+Shift shift_of(uint block) {
+    Shift shift = Shift(0.0f, false, false);
+    if ((push.flags & carry_ways) == 0u) return shift;
     Ways ways = push.memory.at[0].ways;
+    const uint now = push.memory.at[0].bounds_now;
     const float q = float(push.map_size) / push.epsilon;
-    float way = way_length(ways.at[block], q);
-    if (block != push.blocks) way += way_length(ways.at[bsh_owner_of(block, push.leaves, push.blocks) >> 3], q);
-    return way;
+    const Way own = ways.at[block];
+    shift.way = way_length(own, q);
+    shift.own = now != 0u && own.version == now;
+    shift.any = shift.own;
+    if (block == push.blocks) return shift;
+    const Way above = ways.at[bsh_owner_of(block, push.leaves, push.blocks) >> bsh_arity_log2];
+    shift.way += way_length(above, q);
+    shift.any = shift.any || (now != 0u && above.version == now);
+    return shift;
 }
 
 Evaluation evaluate(uint block, View view) {

@@ -35,6 +35,7 @@ struct CarryReport {
     AppendReport lists;                    // `processed` counts node-views evaluated, nine an item, `kept` is the length of the list
     uint64_t cut = 0;                      // node-views in the cuts, culled ones included
     uint64_t due = 0, dropped = 0, made = 0, holes = 0;  // items
+    uint64_t changed = 0;                  // views of which the frame shows something else than the last
     uint64_t invalid = 0;                  // node-views of the cut that should be open (lazy)
     uint64_t items() const { return lists.kept - holes; }
 };
@@ -60,6 +61,8 @@ public:
 
     // The cut for those who draw it: its kept list holds the groups, and holes that draw nothing.
     const AppendLists& lists() const { return lists_; }
+    // By view of the list's: 0 where the cut, and all that its nodes show, is what it was in the frame before.
+    const engine::Array<uint>& changed() const { return changed_; }
     CarryReport report() const;
 
     static uint64_t bytes(const engine::Device& device, AppendMode mode, uint64_t capacity, uint32_t views);
@@ -70,6 +73,7 @@ private:
     uint32_t first_view_, views_;
     bool started_ = false;
     uint64_t bounds_version_ = 0;  // that the cut was brought up to date with
+    uint bounds_now_ = 0;          // CarriedRefs::bounds_now
     AppendLists lists_;
     engine::Program restart_, travel_, place_;
     AppendKernel due_kernel_, update_, open_;
@@ -77,6 +81,7 @@ private:
     engine::Array<uint> free_, state_words_, report_;
     engine::Array<Travel> travels_;
     engine::Array<View> before_;
+    engine::Array<uint> changed_, changed_report_;
     engine::Array<CarriedRefs> refs_;
 };
 

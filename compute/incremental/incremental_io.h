@@ -16,6 +16,7 @@ const uint cut_no_view = 0x300u;
 
 // Where the list ends, and the places that have become free in it.
 struct CarriedState {
+    uint look;       // what "due" goes through: all of the list, or nothing where nothing stirs
     uint items;      // and holes: the list ends here
     uint holes;      // free.at[0 .. holes)
     uint cut;        // node-views in the cuts of the views that exist
@@ -34,14 +35,15 @@ struct CarriedRefs {
     Travels travels;      // by view, of this list's
     Views before;         // by view: where it was last frame
     CarriedStates state;
+    Uints changed;        // by view: 1 where its cut, or what its cut shows, is not what it was
     Ways ways;            // by block, where bounds move
+    uint bounds_now;      // their version where they did since the last frame; 0: they did not
 };
 MYRIAD_ARRAY(CarriedRefsArray, CarriedRefs, 8)
 
 const uint carry_all = 1u;     // evaluate every item
-const uint carry_ways = 2u;    // bounds move: there are ways
-const uint carry_bounds = 4u;  // they have since the last frame
-const uint carry_last = 8u;    // lazy: no further step follows; what should be opened stays in the cut
+const uint carry_ways = 2u;    // there are ways
+const uint carry_last = 4u;    // lazy: no further step follows; what should be opened stays in the cut
 
 // All kernels but "travel", "restart" and "place".
 struct CarryPush {
@@ -64,17 +66,21 @@ struct TravelPush {
     CarriedRefsArray memory;
     uint first_view, limit;
     uint over_root;        // restart: the block that the root is alone in
+    uint flags;            // carry_all
 };
 
-// "incremental/shift": one invocation a block.
+// "incremental/shift": one invocation a block of `listed`, or of the tree.
 struct ShiftPush {
+    Uints listed;
     Float4s frames;        // of the tree, as in BshRef
     Uint2s spheres;
     Float4s frames_before; // as they were in the last frame
     Uint2s spheres_before;
     Ways ways;
     uint count;
+    uint all;              // 1: every block, there is no list
     uint first;            // 1: there was no last frame, ways begin
+    uint version;          // of the bounds
 };
 
 // "incremental/place": one invocation, after "update" (close: 0) and at the end of a frame (1).

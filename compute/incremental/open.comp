@@ -14,11 +14,12 @@ void main() {
     if (append_decides(index, push.lists)) {
         const Evaluation e = evaluate(pair.x, push.views.at[pair.y]);
         found = e.found;
-        due = due_after(memory.travels.at[pair.y - push.first_view], way_of(pair.x), e.slack, e.reach);
+        due = due_after(memory.travels.at[pair.y - push.first_view], shift_of(pair.x).way, e.slack, e.reach);
         const uint late = (push.flags & carry_last) != 0u ? found >> 16 : 0u;
         if (late != 0u) {
             found = (found | late) & 0xffffu;
             due.at = -1.0f;
+            atomicOr(memory.travels.at[pair.y - push.first_view].flags, travel_waits);
             atomicAdd(memory.state.at[0].invalid, bitCount(late));
         }
         if (append_pass == append_pass_count) memory.found.at[index] = due;

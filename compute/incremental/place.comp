@@ -16,6 +16,7 @@ void main() {
         lists.kept = 0u;
         lists.kept_needed = 0u;
     } else {
+        s.look = 0u;
         s.made = lists.kept;
         const uint filled = min(s.made, s.holes);
         s.holes -= filled;

@@ -14,5 +14,5 @@ void main() {
     memory.dues.at[i] = Due(-1.0f, 0.0f);
     memory.travels.at[i] = Travel(0.0f, 0.0f, 0u);
     memory.before.at[i] = View(vec3(0.0f), 0.0f, vec3(0.0f), 0.0f);
-    if (i == 0u) memory.state.at[0] = CarriedState(push.limit, 0u, 0u, 0u, 0u, 0u);
+    if (i == 0u) memory.state.at[0] = CarriedState(0u, push.limit, 0u, 0u, 0u, 0u, 0u);
 }

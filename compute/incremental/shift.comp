@@ -6,8 +6,9 @@
 layout(push_constant, scalar) uniform Push { ShiftPush push; };
 
 void main() {
-    const uint block = thread_index();
+    uint block = thread_index();
     if (block >= push.count) return;
+    if (push.all == 0u) block = push.listed.at[block];
     const vec4 frame = push.frames.at[block];
     const vec4 frame_before = push.frames_before.at[block];
     const bool stays = push.first == 0u && frame == frame_before;
@@ -27,6 +28,8 @@ void main() {
         centers = max(centers, sqrt(dot(d, d)));
         radii = max(radii, abs(now.radius - before.radius));
     }
-    if (push.first != 0u) push.ways.at[block] = Way(0.0f, 0.0f);
-    else if (centers + radii > 0.0f) push.ways.at[block] = way_on(push.ways.at[block], centers, radii);
+    Way way = Way(0.0f, 0.0f, 0u);
+    if (push.first == 0u) way = way_on(push.ways.at[block], centers, radii);
+    way.version = push.version;  // also where spheres rest: cones and boxes may not
+    push.ways.at[block] = way;
 }

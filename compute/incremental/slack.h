@@ -32,6 +32,8 @@ MYRIAD_ARRAY(Dues, Due, 8)
 const uint travel_exists = 1u;
 const uint travel_moved = 2u;   // this frame
 const uint travel_jumped = 4u;  // this frame, in a way that no slack covers: it came, went, has another frustum, or went or turned so far that little is left
+const uint travel_late = 8u;    // lazy: something of it waits since the last frame
+const uint travel_waits = 16u;  // ... and for the next one
 struct Travel {
     float moved;
     float turned;
@@ -46,7 +48,7 @@ MYRIAD_FN Travel travel_on(Travel t, View before, bool existed, View now, bool e
     const vec3 dn = now.direction - before.direction;
     const float moved = sqrt(dot(dp, dp));
     const float turned = sqrt(dot(dn, dn));
-    t.flags = exists ? travel_exists : 0u;
+    t.flags = (exists ? travel_exists : 0u) | ((t.flags & travel_waits) != 0u ? travel_late : 0u);
     if (exists != existed || now.cos_phi != before.cos_phi || now.sin_phi != before.sin_phi || !(moved < 1e12f && turned < 0.5f)) {
         t.flags |= travel_jumped;
         t.moved = 0.0f;  // every item of the view is evaluated now, so sums can begin anew, and stay fine
@@ -61,11 +63,14 @@ MYRIAD_FN Travel travel_on(Travel t, View before, bool existed, View now, bool e
     return t;
 }
 
+MYRIAD_FN bool travel_stirs(Travel t) { return (t.flags & (travel_moved | travel_jumped | travel_late)) != 0u; }
+
 // Metres that the nodes of a block have come: the most of any centre, and of any radius.
 struct Way {
     float centers, radii;
+    uint version;  // of the bounds, when they last did or might have
 };
-MYRIAD_ARRAY(Ways, Way, 8)
+MYRIAD_ARRAY(Ways, Way, 4)
 
 // What it takes of a slack.
 MYRIAD_FN float way_length(Way w, float q) {
@@ -73,7 +78,7 @@ MYRIAD_FN float way_length(Way w, float q) {
     return sum;
 }
 
-// A block's nodes go on: from `before` to `now` each.
+// A block's nodes go on, at most so far.
 MYRIAD_FN Way way_on(Way w, float centers, float radii) {
     if (!(centers + radii > 0.0f)) return w;
     w.centers = next_up(w.centers + (centers * (1.0f + slack_rounding) + 1e-18f));
@@ -112,10 +117,9 @@ MYRIAD_FN Due due_after(Travel t, float way, float slack, float reach) {
     due.at = max(now, now + slack - (now + abs(slack)) * slack_rounding);
     return due;
 }
-// `moved`: whether the view or the nodes have since the last frame.
-MYRIAD_FN bool is_due(Due due, Travel t, float way, bool moved) {
-    if ((t.flags & travel_jumped) != 0u || due.at < 0.0f) return true;
-    return moved && !(travelled(t, due.reach, way) < due.at);
+// Asked where the view or a node has moved, or something waits: at rest, an item without slack would be due for nothing.
+MYRIAD_FN bool is_due(Due due, Travel t, float way) {
+    return (t.flags & travel_jumped) != 0u || due.at < 0.0f || !(travelled(t, due.reach, way) < due.at);
 }
 MYRIAD_END
 

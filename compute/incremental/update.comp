@@ -31,10 +31,13 @@ void main() {
         change = (e.open ? members(group.block, e.found & 0xffffu) : 0) - members(group.block, group.drawn | (group.culled << 8));
         if (e.open) {
             found = e.found & (old << 16);
-            memory.codes.at[item] = cut_pack(group.block, group.view, e.found & 0xffffu);
-            memory.dues.at[item] = due_after(t, way_of(group.block), e.slack, e.reach);
+            const uvec2 now = cut_pack(group.block, group.view, e.found & 0xffffu);
+            if (now != code) memory.changed.at[group.view - push.first_view] = 1u;
+            memory.codes.at[item] = now;
+            memory.dues.at[item] = due_after(t, shift_of(group.block).way, e.slack, e.reach);
         } else {
             found = dropped;
+            memory.changed.at[group.view - push.first_view] = 1u;
         }
     }
     if (append_pass != append_pass_write) count_members(change);

@@ -99,7 +99,9 @@ void ViewMaps::record(engine::Recorder& recorder, const MapScene& scene, const e
                              bounds_travel_ ? &*bounds_travel_ : nullptr);
     }
     auto scope = recorder.scope("splat");
-    splat_->record(recorder, {*lists(), tree, views, first, settings_.map_size}, atlas_);
+    keeps_ = carried_now_ && atlas_of_ == carried_now_;
+    splat_->record(recorder, {*lists(), tree, views, first, settings_.map_size, keeps_ ? &carried_now_->changed() : nullptr}, atlas_);
+    atlas_of_ = carried_now_;
 }
 
 void ViewMaps::place(engine::Recorder& recorder, const MapScene& scene) {
@@ -121,6 +123,7 @@ bool ViewMaps::accept() {
     }
     const compute::CarryReport carried = carried_now_->report();
     counters_.cut += carried.cut;
+    counters_.maps_drawn = counters_.maps_drawn.value_or(0) + (keeps_ ? carried.changed : batch_);
     counters_.invalid += carried.invalid;
     return true;
 }
@@ -132,6 +135,7 @@ uint64_t ViewMaps::list_bytes(uint64_t next, uint64_t kept) const {
 // Longer lists, or fewer views at once, for what `report` says was missing.
 void ViewMaps::grow(const compute::AppendReport& report) {
     ++counters_.redone;
+    atlas_of_ = nullptr;
     // A quarter more than was needed: the next frame's need differs, and an overflowed step hides what came after it.
     auto grown = [](uint64_t needed, uint64_t capacity) { return needed > capacity ? needed + needed / 4 : capacity; };
     uint64_t next = grown(report.next_needed, lists()->next_capacity());

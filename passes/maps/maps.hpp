@@ -50,6 +50,7 @@ struct MapCounters {
     uint64_t invalid = 0;     // lazy: node-views in the cuts that are larger than epsilon allows
     uint64_t cut = 0;         // node-views in the cuts, culled ones included
     uint64_t groups = 0;      // that hold them
+    std::optional<uint64_t> maps_drawn;  // incremental and lazy: of all views, those that were not kept from the frame before
     uint64_t list_peak = 0, list_capacity = 0;  // items of the longest list, and what there was room for
     uint32_t batches = 0, redone = 0;
     uint64_t triangle_views = 0;  // brute: triangles, each in every view
@@ -82,6 +83,7 @@ public:
     const compute::AppendLists* lists() const { return lists_ ? &*lists_ : carried_now_ ? &carried_now_->lists() : nullptr; }  // null: the method has none, nothing overflows
     // For a tree that was built anew: cuts of the old one are forgotten.
     void forget() {
+        atlas_of_ = nullptr;
         for (const auto& cut : carried_)
             if (cut) cut->restart();
         if (bounds_travel_) bounds_travel_->restart();
@@ -108,6 +110,8 @@ private:
     std::vector<std::unique_ptr<compute::CarriedCut>> carried_;  // incremental and lazy: one a batch
     std::optional<compute::BoundsTravel> bounds_travel_;         // where the tree moves
     compute::CarriedCut* carried_now_ = nullptr;                 // of the batch that was recorded last
+    const compute::CarriedCut* atlas_of_ = nullptr;              // whose maps the atlas holds
+    bool keeps_ = false;                                         // whether the batch that was recorded last kept some
     std::optional<BrutePass> brute_;
     std::optional<IsmPass> ism_;
     engine::Array<uint> atlas_;

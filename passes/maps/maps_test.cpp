@@ -154,31 +154,46 @@ TEST_F(MapsTest, the_memory_limit_changes_batches_and_nothing_else) {
     }
 }
 
-// Frames in which views drift and jump: the maps of cuts that are carried are those of basic cuts, in batches and with lists that grow.
+// Frames in which views drift, jump, come and go or rest, and a part of the scene moves at times: the maps of cuts that are carried are those
+// of basic cuts, in batches and with lists that grow. Maps that need not be drawn again are not, where one batch holds all.
 TEST_F(MapsTest, carried_cuts_draw_what_basic_cuts_draw) {
     const uint32_t n = 40;
     auto vpls = random_vpls(n);
-    compute::Bsh tree(device, world_triangles(scene.triangles), log2_samples, 1);
-    const auto positions = engine::upload(device, "test", "test input", scene.triangles.positions);
+    compute::WorldTriangles world = world_triangles(scene.triangles);
+    world.first_moving = uint(scene.triangles.triangles.size()) - 10;
+    compute::Bsh tree(device, world, log2_samples, 1);
+    auto points = scene.triangles.positions;
     const auto triangles = engine::upload(device, "test", "test input", scene.triangles.triangles);
-    const auto count = engine::upload(device, "test", "test input", std::vector<uint>{n});
     engine::Recorder recorder(device);
-    tree.refit(recorder, positions, triangles);
-    recorder.submit_and_wait();
+    {
+        const auto positions = engine::upload(device, "test", "test input", points);
+        tree.refit(recorder, positions, triangles);
+        recorder.submit_and_wait();
+    }
     MapSettings settings{AppendMode::scan, 16, 0.3f};
     ViewMaps basic(device, settings, n, 4);
     settings.update = CutUpdate::incremental;
     ViewMaps carried(device, settings, n, 4);
-    uint64_t basic_views = 0, carried_views = 0;
-    for (int frame = 0; frame < 6; ++frame) {
+    settings.update = CutUpdate::lazy;
+    settings.lazy_edges = 9;  // more than there are: complete
+    ViewMaps lazy(device, settings, n, 4);
+    uint64_t basic_views = 0, carried_views = 0, drawn = 0;
+    for (int frame = 0; frame < 12; ++frame) {
         SCOPED_TRACE(frame);
         std::vector<View> views;
         for (Vpl& v : vpls) {
-            if (frame && random() % 3) v.position += 0.01f * direction();
-            if (random() % 20 == 0) v = random_vpls(1)[0];
+            if (frame && frame % 3 != 2 && random() % 3) v.position += 0.01f * direction();
+            if (frame % 3 != 2 && random() % 20 == 0) v = random_vpls(1)[0];
             views.push_back({v.position, 0, unpack_direction(v.normal), 1});
         }
+        if (frame > 6 && frame % 3 != 2) {
+            for (uint t = world.first_moving; t < scene.triangles.triangles.size(); ++t) points[scene.triangles.triangles[t].x] += 0.02f * direction();
+            const auto positions = engine::upload(device, "test", "test input", points);
+            tree.refit_moving(recorder, positions, triangles);
+            recorder.submit_and_wait();
+        }
         const auto on = engine::upload(device, "test", "test input", views);
+        const auto count = engine::upload(device, "test", "test input", std::vector<uint>{frame % 4 == 3 ? n - 7 : n});
         const auto draw = [&](ViewMaps& maps) {
             std::vector<uint> atlas;
             for (uint32_t first = 0; first < n;) {
@@ -191,12 +206,18 @@ TEST_F(MapsTest, carried_cuts_draw_what_basic_cuts_draw) {
             }
             return atlas;
         };
-        EXPECT_TRUE(same(draw(basic), draw(carried)));
+        const std::vector<uint> expected = draw(basic);
+        EXPECT_TRUE(same(expected, draw(carried)));
+        EXPECT_TRUE(same(expected, draw(lazy)));
         const MapCounters b = basic.take_counters(), c = carried.take_counters();
         EXPECT_EQ(b.cut, c.cut);
-        if (frame) basic_views += b.node_views, carried_views += c.node_views;
+        EXPECT_EQ(b.maps_drawn, std::nullopt);
+        if (frame == 0) EXPECT_EQ(c.maps_drawn, n);
+        if (frame == 5) EXPECT_EQ(c.maps_drawn, 0u) << "a frame at rest";
+        if (frame) basic_views += b.node_views, carried_views += c.node_views, drawn += *c.maps_drawn;
     }
     EXPECT_LT(carried_views, basic_views / 2);
+    EXPECT_LT(drawn, 11 * n * 2 / 3);
 }
 
 TEST_F(MapsTest, views_that_do_not_exist_see_nothing) {

@@ -40,6 +40,7 @@ void main() {
     uint drawn = g.drawn;
     if (threads_per_group != 1u) drawn &= 1u << (thread_index() % threads_per_group);
     if (drawn == 0u) return;
+    if (push.keeps != 0u && push.changed.at[g.view - push.first_view] == 0u) return;
     const View view = push.views.at[g.view];
     const vec4 frame = push.tree.frames.at[g.block];
     const uint map = (g.view - push.first_view) * map_texels(push.map_size);

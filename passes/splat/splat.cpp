@@ -17,7 +17,14 @@ void SplatPass::check_map_size(const engine::Device& device, uint32_t map_size) 
 
 void SplatPass::record(engine::Recorder& recorder, const SplatInputs& in, const engine::Array<uint>& atlas) {
     check_map_size(device_, in.map_size);
-    recorder.fill(atlas, atlas_nothing);
+    if (in.changed && !in.tree.empty()) {
+        if (!clear_) clear_.emplace(device_, engine::passes_kernels, "splat/clear");
+        const uint views = uint(in.changed->count());
+        recorder.dispatch(*clear_, SplatClearPush{.changed = recorder.read(*in.changed), .atlas = recorder.write(atlas), .views = views,
+                                                  .map_size = in.map_size}, uint64_t(views) * 2 * in.map_size);
+    } else {
+        recorder.fill(atlas, atlas_nothing);
+    }
     if (in.tree.empty()) return;
     grid_.dispatch(recorder, splat_, in.cut.state(), compute::AppendLists::kept_word, in.cut.kept_capacity(), threads_per_group_, [&] {
         return SplatPush{.groups = recorder.read(in.cut.kept()),
@@ -28,7 +35,9 @@ void SplatPass::record(engine::Recorder& recorder, const SplatInputs& in, const 
                          .atlas = recorder.write(atlas),
                          .capacity = uint(in.cut.kept_capacity()),
                          .map_size = in.map_size,
-                         .first_view = in.first_view};
+                         .first_view = in.first_view,
+                         .keeps = in.changed ? 1u : 0u,
+                         .changed = in.changed ? recorder.read(*in.changed) : Uints{}};
     });
 }
 

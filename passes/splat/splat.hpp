@@ -1,6 +1,8 @@
 // Draws the cut into the atlas; see README.md.
 #pragma once
 
+#include <optional>
+
 #include "compute/append/append.hpp"
 #include "compute/append/grid.hpp"
 #include "compute/bsh/bsh.hpp"
@@ -13,6 +15,8 @@ struct SplatInputs {
     const compute::Bsh& tree;
     const engine::Array<View>& views;
     uint32_t first_view = 0, map_size = 0;
+    // By view from `first_view`: 0 where the atlas holds this very map already, and keeps it. Null: it holds nothing.
+    const engine::Array<uint>* changed = nullptr;
 };
 
 class SplatPass {
@@ -29,6 +33,7 @@ private:
     engine::Device& device_;
     uint32_t threads_per_group_;
     engine::Program splat_;
+    std::optional<engine::Program> clear_;  // once maps are kept
     compute::Grid grid_;
 };
 

@@ -26,6 +26,15 @@ struct SplatPush {
     Views views;
     Uints atlas;
     uint capacity, map_size, first_view;
+    uint keeps;              // 1: maps of views that did not change are in the atlas, and stay
+    Uints changed;           // by view from first_view; only where `keeps`
+};
+
+// "splat/clear": one invocation a row of a half map.
+struct SplatClearPush {
+    Uints changed;           // by view; maps of the others stay
+    Uints atlas;
+    uint views, map_size;
 };
 
 // The plane of a disc or node of this radius at d, as the view sees it; `faces`: it has no normal to speak of, and faces the view.
