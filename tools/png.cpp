@@ -33,6 +33,14 @@ Picture to_picture(const Image::Rgb& linear, uint32_t width, uint32_t height) {
     return picture;
 }
 
+Picture to_picture(std::span<const uint32_t> rgba, uint32_t width, uint32_t height) {
+    Picture picture{width, height, {}};
+    picture.rgb.reserve(rgba.size() * 3);
+    for (const uint32_t texel : rgba)
+        for (int shift : {0, 8, 16}) picture.rgb.push_back(static_cast<uint8_t>(texel >> shift));
+    return picture;
+}
+
 Picture heat_map(std::span<const float> values, uint32_t width, uint32_t height, double scale) {
     Picture picture{width, height, std::vector<uint8_t>(size_t(width) * height * 3)};
     assert(values.size() * 3 == picture.rgb.size());

@@ -18,6 +18,9 @@ struct Picture {
 // Clamps to [0, 1], encodes as sRGB and rounds. Tone mapping is the caller's. NaN becomes 0.
 Picture to_picture(const Image::Rgb& linear, uint32_t width, uint32_t height);
 
+// Texels as the device packs them: 8 bits each, red the lowest.
+Picture to_picture(std::span<const uint32_t> rgba, uint32_t width, uint32_t height);
+
 // Values as colours: 0 is dark blue, `scale` and beyond light yellow, non-finite white. Lightness (OKLab L) grows in equal
 // steps and hue runs from blue to yellow only, so the map is perceptually ordered, prints in grey, and reads the same
 // with red-green colour blindness.

@@ -66,20 +66,12 @@ std::string camera_name(const Loaded& loaded) {
     return loaded.camera == scenes::none ? "(all in view)" : loaded.scene.cameras[loaded.camera].name;
 }
 
-Picture to_picture(const std::vector<uint>& rgba, const Image& image) {
-    Picture picture{image.width, image.height, {}};
-    picture.rgb.reserve(rgba.size() * 3);
-    for (const uint texel : rgba)
-        for (int shift : {0, 8, 16}) picture.rgb.push_back(static_cast<uint8_t>(texel >> shift));
-    return picture;
-}
-
 // The exposure that is found for the first image is that of all: a film must not flicker.
 void write_images(const RenderOptions& options, RunRecord& run, Image& image, passes::Frame& frame, std::optional<uint32_t> number) {
     if (!options.png.empty()) {
         if (!run.exposure) run.exposure = options.exposure ? *options.exposure : auto_exposure(*image.rgb());
         const std::string path = numbered(options.png, number);
-        write_png(path, to_picture(frame.tonemapped(static_cast<float>(*run.exposure)), image));
+        write_png(path, to_picture(frame.tonemapped(static_cast<float>(*run.exposure)), image.width, image.height));
         run.files.push_back(path);
     }
     if (!options.exr.empty()) {

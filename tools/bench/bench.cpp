@@ -37,6 +37,9 @@ const std::vector<Bench>& benches() {
     static const std::vector<Bench> all = {
         {"manylods", "cut and splat of many VPL views: the device's lists and walks against native ones", bench_manylods},
         {"manylods-table1", "maps of a moving light's VPLs: brute, ISM, basic, incremental and lazy cuts, with their errors", bench_table1},
+        {"manylods-fig8", "cuts over a clip, frame by frame: basic, incremental and lazy", bench_fig8,
+         {"--animation", "--frames", "--csv", "--plot"}},
+        {"manylods-ism", "imperfect shadow maps with the points a map that take ManyLoDs' time, diffuse and glossy", bench_equal_time, {"--images"}},
     };
     return all;
 }
@@ -59,13 +62,22 @@ void print_row(const BenchRow& row) {
     std::fflush(stdout);
 }
 
-void run(const Arguments& arguments) {
+// An option that changes nothing is refused.
+void refuse_foreign(const CLI::App& command, const Bench& chosen) {
+    for (const Bench& bench : benches())
+        for (const std::string& option : bench.own)
+            if (command.count(option) && std::ranges::find(chosen.own, option) == chosen.own.end())
+                throw InputError(option + " is an option of bench " + bench.name + ", which " + chosen.name + " does not have; leave it out");
+}
+
+void run(const Arguments& arguments, const CLI::App& command) {
     if (arguments.name == "list") {
         for (const Bench& bench : benches()) std::printf("%-12s %s\n", bench.name, bench.what);
         return;
     }
     const auto bench = std::find_if(benches().begin(), benches().end(), [&](auto& b) { return arguments.name == b.name; });
     if (bench == benches().end()) throw InputError("no experiment is called \"" + arguments.name + "\"; see myriad bench list");
+    refuse_foreign(command, *bench);
     if (!arguments.json.empty()) require_writable(arguments.json);
     engine::Device device({.select = arguments.device, .validation = false, .memory_limit = arguments.memory_mib << 20});
     std::printf("device: %s, %s\n", device.info().name.c_str(), device.info().driver_version.c_str());
@@ -94,8 +106,13 @@ void add_bench(CLI::App& app) {
     bench->add_option("--repeat", o.repeats, "measured runs of each row, after a warm-up (5)")->check(CLI::Range(1u, 1000u));
     bench->add_option("--memory-limit", arguments->memory_mib, "MiB of device memory (all)")->check(CLI::Range(1u, 1u << 24));
     bench->add_option("--seed", o.seed, "seed (1)");
+    bench->add_option("--animation", o.animation, "manylods-fig8: the clip that plays, by name or index (the first)");
+    bench->add_option("--frames", o.frames, "manylods-fig8: of the clip, 1/24 s each (48)")->check(CLI::Range(1u, 100000u));
+    bench->add_option("--csv", o.csv, "manylods-fig8: write a line for each frame");
+    bench->add_option("--plot", o.plot, "manylods-fig8: draw the cuts' times over the frames, as SVG");
+    bench->add_option("--images", o.images, "manylods-ism: a folder for the images that are compared, as EXR and PNG");
     bench->add_option("--device", arguments->device, "part of a device's name, or its index");
-    bench->callback([arguments] { run(*arguments); });
+    bench->callback([arguments, bench] { run(*arguments, *bench); });
 }
 
 }  // namespace myriad::tools

@@ -45,6 +45,10 @@ struct BenchOptions {
     uint32_t repeats = 5;
     uint64_t memory_limit = 0;
     uint32_t seed = 1;
+    // Of some experiments only (Bench::own):
+    std::string animation;          // empty: the first clip
+    uint32_t frames = 48;
+    std::string csv, plot, images;  // empty: not written
 };
 
 // Called with each row as soon as it is measured.
@@ -54,6 +58,7 @@ struct Bench {
     const char* name;
     const char* what;
     void (*run)(engine::Device& device, const BenchOptions& options, const RowSink& sink);
+    std::vector<std::string> own = {};  // options that it takes and others do not
 };
 const std::vector<Bench>& benches();
 
@@ -61,5 +66,9 @@ const std::vector<Bench>& benches();
 void bench_manylods(engine::Device& device, const BenchOptions& options, const RowSink& sink);
 // bench/table1.cpp
 void bench_table1(engine::Device& device, const BenchOptions& options, const RowSink& sink);
+// bench/fig8.cpp
+void bench_fig8(engine::Device& device, const BenchOptions& options, const RowSink& sink);
+// bench/equal_time.cpp
+void bench_equal_time(engine::Device& device, const BenchOptions& options, const RowSink& sink);
 
 }  // namespace myriad::tools

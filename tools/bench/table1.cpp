@@ -3,11 +3,10 @@
 // is what the maps take, cut and splat or what stands in their place, `error` is the last frame's, against the same VPLs with exact rays.
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 
 #include "scenes/moment.hpp"
 #include "scenes/sky.hpp"
-#include "tools/bench/bench.hpp"
+#include "tools/bench/maps_bench.hpp"
 #include "tools/metrics.hpp"
 #include "tools/render_image.hpp"
 
@@ -34,9 +33,6 @@ const Technique techniques[] = {
     {"lazy", Visibility::manylods, CutUpdate::lazy},
 };
 
-// The passes that make maps.
-bool makes_maps(const std::string& pass) { return pass == "cut" || pass == "splat" || pass == "brute" || pass == "ism"; }
-
 struct Turntable {
     const scenes::Scene& scene;
     const scenes::Triangles& triangles;
@@ -55,17 +51,6 @@ struct Turntable {
         return moment;
     }
 };
-
-passes::FrameSettings frame_settings(const BenchOptions& options, uint32_t views) {
-    passes::FrameSettings settings;
-    settings.width = 320, settings.height = 180;
-    settings.vpls = views;
-    settings.seed = options.seed;
-    settings.log2_samples = options.log2_samples;
-    settings.maps.map_size = options.map_size;
-    settings.maps.epsilon = options.epsilon;
-    return settings;
-}
 
 }  // namespace
 
@@ -104,23 +89,11 @@ void bench_table1(engine::Device& device, const BenchOptions& options, const Row
                 settings.maps.revalidate = technique.revalidate;
                 device.reset_memory_peaks();
                 passes::Frame frame(device, scene, triangles, settings);
-                BenchRow row;
-                row.bench = "manylods-table1";
-                row.scene = std::filesystem::path(source).filename().string();
-                row.technique = technique.name;
-                row.views = views;
-                row.settings = {{"light_step_deg", step}, {"map_size", options.map_size}, {"width", settings.width}, {"height", settings.height}};
-                if (technique.visibility == Visibility::manylods) row.settings["epsilon"] = options.epsilon, row.settings["samples"] = uint64_t(1) << options.log2_samples;
-                if (technique.update == CutUpdate::incremental) row.settings["revalidate"] = technique.revalidate ? "all" : "due";
-                if (technique.update == CutUpdate::lazy) row.settings["q"] = settings.maps.lazy_edges;
+                BenchRow row = maps_row("manylods-table1", source, technique.name, settings);
+                row.settings["light_step_deg"] = step;
                 std::vector<double> node_views, invalid;
                 const Image image = play(frame, [&] {
-                    double total = 0;
-                    std::map<std::string, double> stages;
-                    for (const engine::PassTime& pass : frame.times())
-                        if (makes_maps(pass.name)) total += pass.gpu_ms, stages[pass.name] += pass.gpu_ms;
-                    row.ms.ms.push_back(total);
-                    for (const auto& [name, ms] : stages) row.stages[name].ms.push_back(ms);
+                    add_maps_times(row, frame);
                     if (!frame.counters().maps) return;
                     const passes::MapCounters& maps = *frame.counters().maps;
                     node_views.push_back(double(maps.node_views));
@@ -130,9 +103,7 @@ void bench_table1(engine::Device& device, const BenchOptions& options, const Row
                 });
                 if (row.counters.contains("cut")) row.counters["node_views"] = Samples{node_views}.median();
                 if (technique.update == CutUpdate::lazy) row.counters["invalid_share"] = Samples{invalid}.median();
-                for (const auto& [kind, use] : device.memory()) row.bytes[kind == "lists" ? "pairs" : kind] = use.peak;
-                row.bytes.try_emplace("pairs", 0);
-                row.bytes.try_emplace("atlas", 0);
+                set_bytes(row, device);
                 const Metrics metrics = measure(reference, image, 0.01);
                 row.error = {{"relMSE", metrics.rel_mse}, {"SSIM", metrics.ssim}};
                 sink(row);

@@ -1,0 +1,54 @@
+#include "tools/bench/maps_bench.hpp"
+
+#include <filesystem>
+
+namespace myriad::tools {
+
+using passes::CutUpdate;
+using passes::Visibility;
+
+passes::FrameSettings frame_settings(const BenchOptions& options, uint32_t views) {
+    passes::FrameSettings settings;
+    settings.width = 320, settings.height = 180;
+    settings.vpls = views;
+    settings.seed = options.seed;
+    settings.log2_samples = options.log2_samples;
+    settings.maps.map_size = options.map_size;
+    settings.maps.epsilon = options.epsilon;
+    return settings;
+}
+
+BenchRow maps_row(const char* bench, const std::string& source, const char* technique, const passes::FrameSettings& settings) {
+    BenchRow row;
+    row.bench = bench;
+    row.scene = std::filesystem::path(source).filename().string();
+    row.technique = technique;
+    row.views = settings.vpls;
+    row.settings = {{"width", settings.width}, {"height", settings.height}};
+    if (settings.visibility != Visibility::rays && settings.visibility != Visibility::none) row.settings["map_size"] = settings.maps.map_size;
+    if (settings.visibility == Visibility::manylods) {
+        row.settings["epsilon"] = settings.maps.epsilon;
+        row.settings["samples"] = uint64_t(1) << settings.log2_samples;
+        if (settings.maps.update == CutUpdate::incremental) row.settings["revalidate"] = settings.maps.revalidate ? "all" : "due";
+        if (settings.maps.update == CutUpdate::lazy) row.settings["q"] = settings.maps.lazy_edges;
+    }
+    if (settings.visibility == Visibility::ism) row.settings["points"] = settings.maps.ism.points;
+    return row;
+}
+
+void add_maps_times(BenchRow& row, const passes::Frame& frame) {
+    double total = 0;
+    std::map<std::string, double> stages;
+    for (const engine::PassTime& pass : frame.times())
+        if (pass.name == "cut" || pass.name == "splat" || pass.name == "brute" || pass.name == "ism") total += pass.gpu_ms, stages[pass.name] += pass.gpu_ms;
+    row.ms.ms.push_back(total);
+    for (const auto& [name, ms] : stages) row.stages[name].ms.push_back(ms);
+}
+
+void set_bytes(BenchRow& row, const engine::Device& device) {
+    for (const auto& [kind, use] : device.memory()) row.bytes[kind == "lists" ? "pairs" : kind] = use.peak;
+    row.bytes.try_emplace("pairs", 0);
+    row.bytes.try_emplace("atlas", 0);
+}
+
+}  // namespace myriad::tools

@@ -1,0 +1,21 @@
+// What experiments share that time the maps of whole frames and judge the images made with them.
+#pragma once
+
+#include "passes/frame.hpp"
+#include "tools/bench/bench.hpp"
+
+namespace myriad::tools {
+
+// 320 x 180 pixels, `views` VPLs, and the options' maps, samples and seed.
+passes::FrameSettings frame_settings(const BenchOptions& options, uint32_t views);
+
+// A row with the settings that say what is in it. `source` is shortened to its file's name.
+BenchRow maps_row(const char* bench, const std::string& source, const char* technique, const passes::FrameSettings& settings);
+
+// What the frame that was rendered last took for its maps: cut and splat, or what stands in their place. A sample of the row's time and stages.
+void add_maps_times(BenchRow& row, const passes::Frame& frame);
+
+// The device memory's peaks since they were reset, as spec, section 5 names them.
+void set_bytes(BenchRow& row, const engine::Device& device);
+
+}  // namespace myriad::tools
