@@ -14,6 +14,7 @@
 #include <glm/glm.hpp>
 
 #include "scenes/animation.hpp"
+#include "scenes/environment.hpp"
 #include "scenes/motion.hpp"
 
 namespace myriad::scenes {
@@ -110,6 +111,7 @@ struct Scene {
     std::vector<Light> lights;
     std::vector<Camera> cameras;       // may be empty: see framing_camera()
     glm::vec3 background{0};           // radiance, the same in all directions, of what rays that leave the scene see
+    std::optional<Environment> environment;  // in place of `background`; the last solid_angles.size() of `lights` stand for it
     // What can move, and what that hangs from; all empty for a scene that stands still.
     std::vector<Node> nodes;
     std::vector<Skin> skins;

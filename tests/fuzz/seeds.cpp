@@ -406,6 +406,16 @@ std::string compressed_by_meshopt() {
     return doc.dump() + '\0' + vertices.bytes + triangles.bytes;
 }
 
+// Rows in runs, rows as they are, and a run of old.
+std::vector<std::string> radiance_pictures() {
+    const std::string head = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n";
+    const auto text = [](std::initializer_list<int> bytes) { return std::string(bytes.begin(), bytes.end()); };
+    std::string in_runs = head + "-Y 4 +X 8\n", plain = head + "+Y 2 +X 4\n";
+    for (int y = 0; y < 4; ++y) in_runs += text({2, 2, 0, 8, 136, 90, 8, 1, 2, 3, 4, 5, 6, 7, 8, 131, 7, 133, 60, 136, 129});
+    for (int i = 0; i < 6; ++i) plain += text({90, 80, i, 128});
+    return {in_runs, plain + text({1, 1, 1, 2})};
+}
+
 }  // namespace
 
 std::vector<std::string> exr_seeds();  // exr_seeds.cpp
@@ -414,6 +424,7 @@ std::vector<std::string> seeds(const std::string& target) {
     if (target == "picture") return pictures();
     if (target == "draco") return draco_streams();
     if (target == "exr") return exr_seeds();
+    if (target == "environment") return radiance_pictures();
     if (target == "meshopt") return meshopt_inputs();
     if (target == "ibsp") return {ibsp_map()};
     if (target == "embree") return {embree_strands()};

@@ -15,6 +15,7 @@ void gltf(const uint8_t* data, size_t size);
 void picture(const uint8_t* data, size_t size);  // PNG, JPEG
 void draco(const uint8_t* data, size_t size);    // a Draco stream
 void exr(const uint8_t* data, size_t size);      // an EXR file, as `myriad compare` reads it
+void environment(const uint8_t* data, size_t size);  // an EXR or Radiance file, as `myriad render --env` reads it
 // Five bytes say how (mode, filter, stride, count), the rest is a stream of EXT_meshopt_compression.
 void meshopt(const uint8_t* data, size_t size);
 void ibsp(const uint8_t* data, size_t size);     // a map of Quake III; what `myriad convert` would write of it is written
@@ -29,7 +30,8 @@ struct Target {
     void (*run)(const uint8_t* data, size_t size);
 };
 inline constexpr Target targets[] = {{"gltf", gltf},     {"picture", picture}, {"draco", draco}, {"exr", exr},         {"meshopt", meshopt}, {"ibsp", ibsp},
-                                     {"embree", embree}, {"assimp", assimp},   {"ply", ply},     {"texture", texture}, {"recipe", recipe}};
+                                     {"embree", embree}, {"assimp", assimp},   {"ply", ply},     {"texture", texture}, {"recipe", recipe},
+                                     {"environment", environment}};
 
 // Where each target starts from: small valid inputs, made by our own writers and by the libraries' encoders. The same
 // bytes every time.
