@@ -10,14 +10,6 @@ namespace myriad::passes {
 
 namespace {
 
-// Pixels in a block's side so that each gathers about `subset` of the VPLs. A power of two: interleaved sets of that many are fair
-// samples of the VPL sequence (passes/vpl).
-uint32_t block_for(uint32_t vpls, uint32_t subset) {
-    uint32_t block = 1;
-    while (subset > 0 && block < 16 && uint64_t(subset) * block * block < vpls) block *= 2;
-    return block;
-}
-
 double total_area(const compute::WorldTriangles& world) {
     double area = 0;
     world.for_each([&](uint32_t, uint32_t, const Corners& t) {
@@ -72,7 +64,6 @@ Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::T
     reach_ = std::max({far.x, far.y, far.z});
     const double area = total_area(world);
     vpl_bound_ = settings.vpl_bound > 0 ? settings.vpl_bound : area > 0 ? float(std::min(3.14159265 * settings.vpls / area, 1e30)) : 1e30f;
-    block_ = block_for(settings.vpls, settings.subset);
     size_.triangles = world.count();
     size_.stored_triangles = triangles.triangles.size();
     size_.instances = std::count_if(world.instances.begin(), world.instances.end(), [](const Instance& i) { return !(i.flags & instance_in_world); });
@@ -82,21 +73,25 @@ Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::T
 
     if (DeformPass::needed(triangles)) deform_.emplace(device, triangles.motion);
     if (DirectPass::needed(lights_)) direct_.emplace(device, settings.width, settings.height, 0, bvh_.constants({{glossy_constant, size_.glossy}}));
-    if (lights_.power() > 0 && settings.vpls > 0 && !triangles.triangles.empty()) make_indirect(derived, triangles.hi - triangles.lo);
+    if (scene.environment) environment_.emplace(device, scene, triangles.lo, triangles.hi, settings.maps.map_size);
+    if (!triangles.triangles.empty()) make_lighting(scene, derived, triangles);
     step("compiling kernels", [&] { recorder_.warm_up(); });
     if (vpl_) step("finding where light goes", [&] { prepare_paths(); });
-    if (maps_) maps_->place(recorder_, map_scene());
+    for (auto* gathering : {&indirect_, &natural_})
+        if (*gathering) (*gathering)->place(recorder_, map_scene());
     if (!tree_) return;
     refit_tree();
     if (deform_ && !tree_->empty()) tree_->measure(recorder_);
 }
 
-void Frame::make_indirect(compute::Derived& derived, const vec3& extent) {
+void Frame::make_lighting(const scenes::Scene& scene, compute::Derived& derived, const scenes::Triangles& triangles) {
     const FrameSettings& settings = settings_;
-    vpl_.emplace(device_, settings.vpls, bvh_.constants());
-    vpl_->sure_paths(lights_, settings.bounces);  // throws when not one path fits
-    gather_.emplace(device_, gather_visibility(settings.visibility), settings.width, settings.height, bvh_.constants(), size_.glossy);
-    if (settings.filter && block_ > 1) filter_.emplace(device_, settings.width, settings.height, size_.glossy);
+    const uint32_t far_lights = uint32_t(environment_lights(scene).size());
+    if (lights_.power() > 0 && settings.vpls > 0) {
+        vpl_.emplace(device_, settings.vpls, bvh_.constants());
+        vpl_->sure_paths(lights_, settings.bounces);  // throws when not one path fits
+    }
+    if (!vpl_ && far_lights == 0) return;
     if (settings.visibility == Visibility::manylods) {
         tree_.emplace(step("sampling the surface", [&] { return derived.bsh(device_, settings.log2_samples, settings.seed); }));
         size_.samples = tree_->leaves();
@@ -107,9 +102,17 @@ void Frame::make_indirect(compute::Derived& derived, const vec3& extent) {
         sampling = step("sampling the surface", [&] { return derived.samples(settings.log2_samples, settings.seed); });
         size_.samples = sampling.samples.size();
     }
-    if (gather_visibility(settings.visibility) != GatherVisibility::maps) return;
+    const vec3 extent = triangles.hi - triangles.lo;
     const IsmScene points{derived.world(), sampling, std::max({extent.x, extent.y, extent.z})};
-    maps_.emplace(device_, map_settings(settings), settings.vpls, block_ * block_, &derived.world(), &points);
+    if (vpl_) indirect_.emplace(make_gathering(settings.vpls, false, derived.world(), points));
+    if (far_lights > 0) natural_.emplace(make_gathering(far_lights, true, derived.world(), points));
+}
+
+Gathering Frame::make_gathering(uint32_t lights, bool far, const compute::WorldTriangles& world, const IsmScene& points) {
+    const GatheringSettings settings{.visibility = gather_visibility(settings_.visibility), .width = settings_.width, .height = settings_.height, .lights = lights,
+                                     .subset = settings_.subset, .filter = settings_.filter, .glossy = size_.glossy, .far = far, .bias = settings_.bias,
+                                     .maps = map_settings(settings_)};
+    return Gathering(device_, settings, bvh_.constants(), &world, &points);
 }
 
 void Frame::prepare_paths() { vpl_->prepare(recorder_, geometry_, bvh_, lights_, settings_.bounces, settings_.seed); }
@@ -138,7 +141,8 @@ void Frame::move_to(const scenes::Moment& moment) {
         auto scope = recorder_.scope("refit rays");
         bvh_.refit(recorder_, geometry_.positions(), geometry_.triangles());
     }
-    if (maps_) maps_->place(recorder_, map_scene());
+    for (auto* gathering : {&indirect_, &natural_})
+        if (*gathering) (*gathering)->place(recorder_, map_scene());
     if (tree_ && !tree_->empty()) follow_tree();
 }
 
@@ -147,7 +151,8 @@ void Frame::follow_tree() {
         auto scope = recorder_.scope("rebuild");
         tree_->rebuild(recorder_, geometry_.positions(), geometry_.triangles(), geometry_.instances(), geometry_.opacity());
         tree_extent_ = 0;
-        if (maps_) maps_->forget();
+        for (auto* gathering : {&indirect_, &natural_})
+            if (*gathering) (*gathering)->forget();
     } else {
         auto scope = recorder_.scope("refit");
         tree_->refit_moving(recorder_, geometry_.positions(), geometry_.triangles(), geometry_.instances(), geometry_.opacity());
@@ -188,6 +193,7 @@ void Frame::render_once(const scenes::Camera& camera) {
     {
         auto scope = recorder_.scope("gbuffer");
         gbuffer_.record(recorder_, geometry_, bvh_, camera, background_);
+        if (environment_) environment_->record_background(recorder_, gbuffer(), camera);
     }
     if (direct_) {
         auto scope = recorder_.scope("direct");
@@ -197,14 +203,24 @@ void Frame::render_once(const scenes::Camera& camera) {
         auto scope = recorder_.scope("vpls");
         vpl_->record(recorder_, geometry_, bvh_, lights_, settings_.bounces, settings_.seed);
     }
-    if (vpl_) gather_indirect(pixel_angle);
+    recorder_.fill(exhausted_, 0);
+    if (indirect_) gather(*indirect_, vpl_->vpls(), vpl_->views(), vpl_->count(), pixel_angle, "gathering");
+    if (natural_) gather(*natural_, environment_->lights(), environment_->views(), environment_->count(), pixel_angle, "gathering from the environment");
     {
         auto scope = recorder_.scope("compose");
-        compose_.record(recorder_, gbuffer(), irradiance(), direct());
+        compose_.record(recorder_, gbuffer(), indirect_ ? &indirect_->irradiance() : nullptr, natural_ ? &natural_->irradiance() : nullptr, direct());
     }
     read_back_words();
     if (vpl_) counters_.vpls = host_words_.span()[0];
-    if (maps_) counters_.maps = maps_->take_counters();
+    count_maps();
+}
+
+void Frame::count_maps() {
+    for (auto* gathering : {&indirect_, &natural_})
+        if (const auto counters = *gathering ? (*gathering)->take_counters() : std::nullopt) {
+            if (!counters_.maps) counters_.maps.emplace();
+            *counters_.maps += *counters;
+        }
     if (settings_.visibility == Visibility::brute && vpl_) counters_.maps->triangle_views = size_.triangles * host_words_.span()[6];
 }
 
@@ -217,7 +233,8 @@ void Frame::read_back_words() {
     };
     fetch(gbuffer_.exhausted(), 1);
     if (direct_) fetch(direct_->exhausted(), 2);
-    if (vpl_) fetch(vpl_->count(), 0, 1), fetch(vpl_->count(), 5, 2), fetch(vpl_->count(), 6, 0), fetch(vpl_->exhausted(), 3), fetch(exhausted_, 4);
+    if (vpl_) fetch(vpl_->count(), 0, 1), fetch(vpl_->count(), 5, 2), fetch(vpl_->count(), 6, 0), fetch(vpl_->exhausted(), 3);
+    if (indirect_ || natural_) fetch(exhausted_, 4);
     recorder_.submit_and_wait();
     for (uint exhausted : host_words_.span().subspan(1, 4))
         if (exhausted)
@@ -225,31 +242,11 @@ void Frame::read_back_words() {
                               " loop iterations that this driver allows; use Mesa 23 or later, or a scene with less overlap");
 }
 
-// The many views: their maps, batch by batch, and what their VPLs bring to each pixel.
-void Frame::gather_indirect(float pixel_angle) {
-    const GatherInputs in{gbuffer(), vpl_->vpls(), vpl_->count(), block_, vpl_bound_};
-    const uint32_t views = settings_.vpls;
-    gather_->clear(recorder_);
-    recorder_.fill(exhausted_, 0);
-    for (uint32_t first = 0; first < views;) {
-        const uint32_t batch = maps_ ? maps_->batch() : gather_->max_vpls(block_);
-        if (maps_) maps_->record(recorder_, map_scene(), vpl_->views(), vpl_->count(), first);
-        {
-            auto scope = recorder_.scope("gather");
-            if (settings_.visibility == Visibility::rays)
-                gather_->record_rays(recorder_, in, first, batch, bvh_, reach_, exhausted_);
-            else
-                gather_->record_maps(recorder_, in, first, batch, maps_ ? &maps_->atlas() : nullptr, settings_.maps.map_size, settings_.bias,
-                                     maps_ ? maps_->lists() : nullptr);
-        }
-        recorder_.submit_and_wait();  // a batch a submission: progress, and no time-out on devices that watch
-        if (!maps_ || maps_->accept()) first += batch;  // else the same again, with longer lists or fewer views
-        report("gathering", std::min(1.0, double(first) / views));
-    }
-    if (filter_) {
-        auto scope = recorder_.scope("filter");
-        filter_->record(recorder_, gbuffer(), gather_->irradiance(), block_, pixel_angle);
-    }
+// The many views: their maps, batch by batch, and what their lights bring to each pixel.
+void Frame::gather(Gathering& gathering, const engine::Array<Vpl>& lights, const engine::Array<View>& views, const engine::Array<uint>& count, float pixel_angle,
+                   const char* stage) {
+    const GatheringInputs in{.gbuffer = gbuffer(), .lights = lights, .views = views, .count = count, .bound = vpl_bound_, .scene = map_scene(), .bvh = bvh_, .reach = reach_};
+    gathering.record(recorder_, in, pixel_angle, exhausted_, [&](double done) { report(stage, done); });
 }
 
 std::vector<uint> Frame::tonemapped(float exposure) {

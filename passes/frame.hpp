@@ -12,12 +12,11 @@
 #include "passes/compose/compose.hpp"
 #include "passes/deform/deform.hpp"
 #include "passes/direct/direct.hpp"
-#include "passes/filter/filter.hpp"
-#include "passes/gather/gather.hpp"
+#include "passes/environment/environment.hpp"
+#include "passes/gathering/gathering.hpp"
 #include "passes/gbuffer/gbuffer.hpp"
 #include "passes/geometry/geometry.hpp"
 #include "passes/geometry/lights.hpp"
-#include "passes/maps/maps.hpp"
 #include "passes/tonemap/tonemap.hpp"
 #include "passes/vpl/vpl.hpp"
 
@@ -98,14 +97,20 @@ public:
     const GBuffer& gbuffer() const { return gbuffer_.gbuffer(); }
     const engine::Array<vec4>& beauty() const { return compose_.beauty(); }
     const engine::Array<vec4>& indirect() const { return compose_.indirect(); }
-    // Of indirect light what glossy lobes reflect: the second half of this. Null: nothing is glossy, or there is no such light.
-    const engine::Array<vec4>* mirrored() const { return gather_ && gbuffer().glossy() ? irradiance() : nullptr; }
+    // Of indirect light, the environment's included, what glossy lobes reflect is the sum of these arrays' second halves. Empty: nothing is
+    // glossy, or there is no such light.
+    std::vector<const engine::Array<vec4>*> mirrored() const {
+        std::vector<const engine::Array<vec4>*> arrays;
+        for (const auto* gathering : {&indirect_, &natural_})
+            if (*gathering && gbuffer().glossy()) arrays.push_back(&(*gathering)->irradiance());
+        return arrays;
+    }
     const engine::Array<vec4>* direct() const { return direct_ ? &direct_->radiance() : nullptr; }  // null: no punctual lights
     const VplPass* vpls() const { return vpl_ ? &*vpl_ : nullptr; }                              // null: nothing shines, or --vpls 0
     const compute::Bsh* tree() const { return tree_ ? &*tree_ : nullptr; }
 
     const FrameSettings& settings() const { return settings_; }
-    uint32_t block() const { return block_; }       // VPL sets are block x block
+    uint32_t block() const { return indirect_ ? indirect_->block() : 1; }  // VPL sets are block x block
     float vpl_bound() const { return vpl_bound_; }  // 1/m^2, as used
     const SceneSize& size() const { return size_; }
     const FrameCounters& counters() const { return counters_; }
@@ -117,7 +122,8 @@ private:
           const FrameSettings& settings);
     Frame(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles, const GeometryData& data, compute::Derived derived,
           const FrameSettings& settings);
-    void make_indirect(compute::Derived& derived, const vec3& extent);
+    void make_lighting(const scenes::Scene& scene, compute::Derived& derived, const scenes::Triangles& triangles);
+    Gathering make_gathering(uint32_t lights, bool far, const compute::WorldTriangles& world, const IsmScene& points);
     MapScene map_scene() const { return {.tree = tree(), .geometry = &geometry_}; }
     void prepare_paths();
     void refit_tree();
@@ -126,10 +132,11 @@ private:
     void render_once(const scenes::Camera& camera);
     template <class Make>
     auto step(const char* name, Make make);  // reports it and times it
-    void gather_indirect(float pixel_angle);
+    void gather(Gathering& gathering, const engine::Array<Vpl>& lights, const engine::Array<View>& views, const engine::Array<uint>& count, float pixel_angle,
+                const char* stage);
     void read_back_words();
+    void count_maps();
     void report(const std::string& stage, double done) const;
-    const engine::Array<vec4>* irradiance() const { return !vpl_ ? nullptr : filter_ ? &filter_->filtered() : &gather_->irradiance(); }
 
     engine::Device& device_;
     FrameSettings settings_;
@@ -140,16 +147,14 @@ private:
     compute::Bvh bvh_;
     vec3 background_{0};
     float reach_ = 0, vpl_bound_ = 0;
-    uint32_t block_ = 1;
     // Passes that the scene or the settings do not need do not exist.
     std::optional<DeformPass> deform_;
     GBufferPass gbuffer_;
     std::optional<DirectPass> direct_;
     std::optional<VplPass> vpl_;
+    std::optional<EnvironmentPass> environment_;
     std::optional<compute::Bsh> tree_;
-    std::optional<ViewMaps> maps_;
-    std::optional<GatherPass> gather_;
-    std::optional<FilterPass> filter_;
+    std::optional<Gathering> indirect_, natural_;  // of VPLs; of the environment's lights
     ComposePass compose_;
     std::optional<TonemapPass> tonemap_;
     engine::Array<uint> exhausted_, host_words_;

@@ -45,7 +45,7 @@ TEST_F(command_line, help_names_every_option) {
         {"render", {"SCENE",     "--output",   "--png",  "--size",    "--camera",  "--seed",    "--visibility", "--append",
                     "--vpls",    "--bounces",  "--map-size",          "--epsilon", "--samples", "--gather",     "--filter",
                     "--vpl-bound", "--bias",   "--exposure",          "--memory-limit",         "--stats",      "--trace",
-                    "--aov",     "--cache",  "--instances",         "--sky",     "--device",   "--repeat", "--float", "--animation", "--time", "--frames", "--fps", "--loop", "--camera-path", "--quiet",   "1:1",       "builtin:cornell", "W/sr"}},
+                    "--aov",     "--cache",  "--instances",         "--sky",     "--device",   "--repeat", "--float", "--animation", "--time", "--frames", "--fps", "--loop", "--camera-path", "--env", "--env-lights", "--env-rotation", "--env-strength", "--quiet",   "1:1",       "builtin:cornell", "W/sr"}},
         {"compare", {"REF", "TEST", "--json", "--fail-above", "--fail-below", "--layer", "--diff", "--tolerance"}},
         {"bench", {"--json"}},
         {"convert", {"IN", "OUT", "--unit", "--up", "--crease", "--colors", "--seed", "--quiet", ".gltf", ".glb", ".obj", ".ply.gz", ".stl", ".fbx", ".dae", ".json", "builtin:NAME"}},
@@ -75,7 +75,7 @@ TEST_F(command_line, bad_usage) {
     refuse(2, {"render", "-o", exr}, "SCENE is required; see myriad render -h");
     refuse(2, tiny + Arguments{"-o", exr, "--paint"}, "--paint; see myriad render -h");
     refuse(2, tiny + Arguments{"-o", exr, "--visibility", "megaviews"}, "manylods, brute, ism, rays, none");
-    for (const char* later : {"--update", "--env", "--coverage", "--primary", "--time-budget", "--target-error"})
+    for (const char* later : {"--update", "--coverage", "--primary", "--time-budget", "--target-error"})
         refuse(2, tiny + Arguments{"-o", exr, later, "1"}, later);  // options of the spec that are yet to come
     refuse(2, tiny + Arguments{"-o", exr, "-o", folder / "b.exr"}, "--output is given more than once");
     refuse(2, tiny + Arguments{"-o"}, "--output");
@@ -111,6 +111,39 @@ TEST_F(command_line, bad_scenes_and_cameras) {
     refuse(2, render("two\nlines.glb"), "two lines.glb");
     refuse(2, tiny + Arguments{"-o", exr, "--camera", "behind"}, "behind");
     refuse(2, tiny + Arguments{"-o", exr, "--camera", "99"}, "99");
+}
+
+TEST_F(command_line, environments) {
+    const TempFolder other;
+    std::string sky = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n", dark = sky;
+    for (int i = 0; i < 32; ++i) sky += i < 16 ? std::string{60, 80, 120, char(129)} : std::string{90, 80, 60, char(127)}, dark += std::string(4, '\0');
+    put(other / "sky.hdr", sky), put(other / "short.hdr", sky.substr(0, 90)), put(other / "dark.hdr", dark), put(other / "text.hdr", "text");
+    const Arguments with = tiny + Arguments{"-o", exr, "--env"};
+    refuse(2, with + Arguments{folder / "none.hdr"}, "none.hdr");
+    refuse(2, with + Arguments{other / "short.hdr"}, "short.hdr': the file is truncated or damaged (row 1 ends early)");
+    refuse(2, with + Arguments{other / "text.hdr"}, "neither an OpenEXR nor a Radiance picture");
+    refuse(2, with + Arguments{other / "dark.hdr"}, "black all over");
+    for (const char* option : {"--env-lights", "--env-rotation", "--env-strength"}) refuse(2, tiny + Arguments{"-o", exr, option, "1"}, option + std::string(" is about an environment"));
+    refuse(2, with + Arguments{other / "sky.hdr", "--env-lights", "0"}, "--env-lights '0': give a whole number");
+    refuse(2, with + Arguments{other / "sky.hdr", "--env-strength", "0"}, "--env-strength '0': give a number");
+    refuse(2, with + Arguments{other / "sky.hdr", "--sky", "on"}, "--sky on and --env");
+    for (const char* v : {"brute", "ism"}) refuse(2, with + Arguments{other / "sky.hdr", "--visibility", v}, v + std::string(" draws no maps for the lights of an environment"));
+
+    const std::string stats = other / "s.json", image = other / "a.exr";
+    std::vector<float> first;
+    for (const Arguments& more : {Arguments{"--vpls", "64"}, Arguments{"--vpls", "0"}, Arguments{"--visibility", "rays"}, Arguments{"--visibility", "none"}, Arguments{"--update", "incremental"},
+                                  Arguments{"--env-rotation", "90"}, Arguments{"--env-strength", "2"}}) {
+        SCOPED_TRACE(testing::PrintToString(more));
+        succeed(Arguments{"render", "builtin:cornell", "--size", "64x48", "--samples", "12", "-q", "-o", image, "--stats", stats, "--env", other / "sky.hdr", "--env-lights", "16",
+                          "--float"} + (more[0] == "--vpls" ? more : more + Arguments{"--vpls", "64"}));
+        const nlohmann::json settings = nlohmann::json::parse(bytes_of(stats))["settings"];
+        EXPECT_EQ(settings["env_lights"], 16);
+        EXPECT_EQ(settings["env"], std::string(other / "sky.hdr"));
+        EXPECT_FALSE(settings.contains("sky"));
+        const std::vector<float> blue = read_exr(image).find("B")->values;
+        if (first.empty()) first = blue;
+        else EXPECT_EQ(blue == first, more == Arguments({"--update", "incremental"}));
+    }
 }
 
 TEST_F(command_line, outputs_that_cannot_be_written_are_told_at_once) {

@@ -8,6 +8,7 @@
 #include "scenes/camera_path.hpp"
 #include "scenes/moment.hpp"
 #include "tools/commands.hpp"
+#include "tools/environment_file.hpp"
 #include "tools/exposure.hpp"
 #include "tools/exr.hpp"
 #include "tools/message.hpp"
@@ -48,7 +49,10 @@ Loaded load(const RenderOptions& options, Progress& progress) {
     if (loaded.path)
         for (const Shot& shot : shots(options)) loaded.path->at(*shot.seconds);  // refused now, not after an hour
     loaded.scene = scenes::load(options.scene);
-    scenes::apply_sky(loaded.scene, options.sky);
+    if (const auto& e = options.environment; !e.file.empty())
+        scenes::apply_environment(loaded.scene, read_environment(e.file, e.strength.value_or(1), glm::radians(double(e.rotation.value_or(0))), loaded.scene.warnings),
+                                  e.lights.value_or(scenes::default_environment_lights), options.frame.seed);
+    else scenes::apply_sky(loaded.scene, options.sky);
     scenes::Playback playback{.loop = options.loop};
     if (!options.animation.empty()) playback = scenes::pick_clips(loaded.scene, options.animation, options.loop);
     else if (options.moves() && !loaded.scene.clips.empty()) playback.clips = {0};
@@ -146,8 +150,14 @@ private:
 
     void write(const Shot& shot) {
         progress_.show("writing", 0);
-        run_.settings = settings_json(settings_, frame_->vpl_bound());
-        run_.settings["sky"] = choice_name(sky_choices(), options_.sky);
+        const auto& e = options_.environment;
+        run_.settings = settings_json(settings_, frame_->vpl_bound(), !e.file.empty());
+        if (e.file.empty()) {
+            run_.settings["sky"] = choice_name(sky_choices(), options_.sky);
+        } else {
+            run_.settings["env"] = e.file, run_.settings["env_lights"] = e.lights.value_or(scenes::default_environment_lights);
+            run_.settings["env_rotation"] = shortest(e.rotation.value_or(0)), run_.settings["env_strength"] = shortest(e.strength.value_or(1));
+        }
         if (shot.number) run_.settings["frame"] = *shot.number;
         if (shot.seconds) run_.settings["seconds"] = *shot.seconds;
         if (const auto& clips = loaded_.triangles.motion.playback.clips; !clips.empty()) {

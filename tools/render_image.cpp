@@ -31,10 +31,12 @@ std::vector<vec4> normals(engine::Device& device, const passes::GBuffer& gbuffer
 }
 
 std::vector<vec4> specular(engine::Device& device, const passes::Frame& frame, size_t pixels) {
-    if (!frame.mirrored()) return std::vector<vec4>(pixels, vec4(0));
-    std::vector<vec4> both = engine::download(device, *frame.mirrored());
-    both.erase(both.begin(), both.begin() + long(pixels));
-    return both;
+    std::vector<vec4> sum(pixels, vec4(0));
+    for (const engine::Array<vec4>* light : frame.mirrored()) {
+        const std::vector<vec4> half = engine::download(device, *light, pixels, pixels);
+        for (size_t i = 0; i < pixels; ++i) sum[i] += half[i];
+    }
+    return sum;
 }
 
 }  // namespace

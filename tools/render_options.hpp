@@ -17,6 +17,12 @@ namespace myriad::tools {
 struct RenderOptions {
     std::string scene, camera;
     scenes::SkyChoice sky = scenes::SkyChoice::automatic;
+    struct Environment {
+        std::string file;                // empty: none
+        std::optional<uint32_t> lights;  // absent: scenes::default_environment_lights
+        std::optional<float> rotation;   // degrees
+        std::optional<float> strength;
+    } environment;
     std::string exr, png, stats, trace;  // files; empty: not wanted
     std::vector<std::string> layers;     // of the EXR beside the beauty: some of layer_names()
     std::optional<float> exposure;       // absent: auto

@@ -23,9 +23,6 @@ uint64_t peak_host_bytes() {
     return getrusage(RUSAGE_SELF, &usage) == 0 ? uint64_t(usage.ru_maxrss) * 1024 : 0;
 }
 
-// A float as people write it: 0.1, not 0.10000000149.
-double shortest(float value) { return std::strtod(show_number(value).c_str(), nullptr); }
-
 double rounded(double ms) { return std::round(ms * 1e4) / 1e4; }  // finer is noise
 
 ordered_json scene_json(const RunRecord& run) {
@@ -84,10 +81,13 @@ std::string counters_text(const FrameRun& frame) {
                        static_cast<unsigned long long>(maps->node_views), static_cast<unsigned long long>(maps->cut),
                        static_cast<unsigned long long>(maps->list_peak), static_cast<unsigned long long>(maps->list_capacity), maps->batches,
                        maps->redone);
+    if (text.starts_with(", ")) text.erase(0, 2);
     return text.empty() ? text : text + "\n";
 }
 
 }  // namespace
+
+double shortest(float value) { return std::strtod(show_number(value).c_str(), nullptr); }
 
 std::vector<PassSum> sum_passes(const std::vector<engine::PassTime>& passes) {
     std::vector<PassSum> sums;
@@ -124,14 +124,14 @@ std::vector<PassSum> median_passes(const std::vector<FrameRun>& frames) {
     return medians;
 }
 
-ordered_json settings_json(const passes::FrameSettings& s, float vpl_bound) {
+ordered_json settings_json(const passes::FrameSettings& s, float vpl_bound, bool environment) {
     ordered_json json = {{"width", s.width}, {"height", s.height}, {"seed", s.seed}, {"brdf", choice_name(brdfs(), s.brdf)}, {"vpls", s.vpls}};
-    if (s.vpls == 0) return json;
-    json["bounces"] = s.bounces;
+    if (s.vpls == 0 && !environment) return json;
+    if (s.vpls > 0) json["bounces"] = s.bounces;
     json["visibility"] = choice_name(visibilities(), s.visibility);
     json["gather"] = show_gather(s.subset);
     json["filter"] = s.filter;
-    json["vpl_bound"] = shortest(vpl_bound);
+    if (s.vpls > 0) json["vpl_bound"] = shortest(vpl_bound);
     if (s.visibility == passes::Visibility::rays || s.visibility == passes::Visibility::none) return json;
     json["map_size"] = s.maps.map_size;
     json["bias"] = shortest(s.bias);

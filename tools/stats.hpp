@@ -79,8 +79,9 @@ std::vector<PassSum> sum_passes(const std::vector<engine::PassTime>& passes);
 std::vector<PassSum> median_passes(const std::vector<FrameRun>& frames);
 double median(std::vector<double> values);  // of an even number: the mean of the middle two; not empty
 
-// The settings under the names of their options; what the technique does not use is absent.
-nlohmann::ordered_json settings_json(const passes::FrameSettings& settings, float vpl_bound);
+// The settings under the names of their options; what the technique does not use is absent. `environment`: there is one.
+nlohmann::ordered_json settings_json(const passes::FrameSettings& settings, float vpl_bound, bool environment = false);
+double shortest(float value);                // as people write it: 0.1, not 0.10000000149
 
 std::string stats_json(const RunRecord& run);
 std::string stats_table(const RunRecord& run);

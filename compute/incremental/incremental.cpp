@@ -39,11 +39,12 @@ void BoundsTravel::record(engine::Recorder& recorder, const Bsh& tree) {
                       visited);
 }
 
-CarriedCut::CarriedCut(engine::Device& device, AppendMode mode, uint64_t capacity, uint32_t first_view, uint32_t views)
+CarriedCut::CarriedCut(engine::Device& device, AppendMode mode, uint64_t capacity, uint32_t first_view, uint32_t views,
+                       const engine::Constants& constants)
     : first_view_(first_view), views_(views), lists_(device, mode, capacity, capacity), restart_(device, compute_kernels, "incremental/restart"),
       travel_(device, compute_kernels, "incremental/travel"), place_(device, compute_kernels, "incremental/place"),
-      due_kernel_(device, compute_kernels, "incremental/due"), update_(device, compute_kernels, "incremental/update"),
-      open_(device, compute_kernels, "incremental/open"), dues_(device, "lists", "dues", capacity),
+      due_kernel_(device, compute_kernels, "incremental/due", constants), update_(device, compute_kernels, "incremental/update", constants),
+      open_(device, compute_kernels, "incremental/open", constants), dues_(device, "lists", "dues", capacity),
       found_(device, "lists", "dues found", mode == AppendMode::scan ? capacity : 0), free_(device, "lists", "holes", capacity),
       state_words_(device, "lists", "carried state", carried_words),
       report_(device, "lists", "carried report", carried_words, engine::Location::host), travels_(device, "lists", "travels", views),

@@ -48,8 +48,8 @@ struct CarrySettings {
 // The cuts of a range of views. In a frame of incremental updates they are the basic cuts as a set, whatever they were before.
 class CarriedCut {
 public:
-    // Room for `capacity` open blocks, at least one a view. Views [first_view, first_view + views) of those that exist.
-    CarriedCut(engine::Device& device, AppendMode mode, uint64_t capacity, uint32_t first_view, uint32_t views);
+    // Room for `capacity` open blocks, at least one a view. Views [first_view, first_view + views) of those that exist. `constants`: as ManyLods.
+    CarriedCut(engine::Device& device, AppendMode mode, uint64_t capacity, uint32_t first_view, uint32_t views, const engine::Constants& constants = {});
 
     // Forgets the cut: the next frame starts from the roots, and is not lazy. For a tree that was built anew.
     void restart() { started_ = false; }

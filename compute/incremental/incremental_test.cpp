@@ -73,6 +73,9 @@ protected:
         const float phis[] = {1, 1, 0.5f, 1.5f, 2};
         return view(point(1.2f), point(), phis[random() % 5]);
     }
+    View random_parallel_view() {
+        return {point(3), -1 - float(1 + random() % 500), glm::normalize(point() + vec3(0, 0, 1e-3f)), log_uniform(0.3f, 10)};
+    }
     std::vector<View> random_views(size_t n) {
         std::vector<View> views;
         while (views.size() < n) views.push_back(random_view());
@@ -254,6 +257,68 @@ TEST_F(IncrementalTest, what_comes_into_view_changes_it) {
     EXPECT_EQ(shift(20), 2u);
     EXPECT_EQ(shift(0.01f), 1u) << "the other";
     EXPECT_EQ(shift(-20), 2u);
+}
+
+// Parallel views change side by radii alone, which slack covers.
+TEST_F(IncrementalTest, slack_of_parallel_views_is_not_exceeded_by_radii) {
+    size_t changed = 0, used = 0;
+    for (int i = 0; i < 200000; ++i) {
+        const View v = random_parallel_view();
+        const float epsilon = log_uniform(0.2f, 10), size = float(8u << random() % 5), q = size / epsilon;
+        const uint height = random() % 4;
+        Sphere s{point(), v.sin_phi / q * (random() % 2 ? log_uniform(0.01f, 100) : uniform(0.9f, 1.1f))};
+        const uint where = classify(v, s, height, epsilon, uint(size));
+        ASSERT_NE(where, node_view_culled);
+        const float slack = node_slack(v, s.center - v.position, 1, s.radius, height, where, q);
+        Travel t{0, 0, travel_exists | travel_moved};
+        Way way{log_uniform(1e-6f, 10), log_uniform(1e-6f, 1), 0};
+        const Due due = due_after(t, way_length(way, q), slack, 1);
+        for (int step = 0; step < 4; ++step) {
+            const float before = s.radius;
+            s.center += point(log_uniform(1e-9f, 1e-3f));
+            s.radius = std::max(0.0f, s.radius + uniform() * (random() % 3 ? std::abs(v.sin_phi / q - s.radius) : s.radius));
+            way = way_on(way, 0, std::abs(s.radius - before));
+            const bool side = classify(v, s, height, epsilon, uint(size)) != where;
+            changed += side;
+            if (is_due(due, t, way_length(way, q))) break;
+            ++used;
+            ASSERT_FALSE(side) << i << ": " << where << " slack " << slack << " radius " << before << " to " << s.radius << " of " << v.sin_phi / q;
+        }
+    }
+    EXPECT_TRUE(changed > 1000 && used > 100000) << changed << " " << used;
+}
+
+// Views of an environment rest as a rule; here they also jump, come and go, and geometry moves under them.
+TEST_F(IncrementalTest, parallel_views_follow_the_basic_cut) {
+    soup(150, 9);
+    const uint32_t most = 16;
+    for (AppendMode mode : {AppendMode::scan, AppendMode::atomic}) {
+        CarriedCut cut(device, mode, 1 << 14, 0, most, {{parallel_constant, 1}});
+        BoundsTravel travel(device);
+        std::vector<View> views(most);
+        for (View& v : views) v = random_parallel_view();
+        uint64_t evaluated = 0, needed = 0, drawn = 0;
+        for (int f = 0; f < 150; ++f) {
+            SCOPED_TRACE(f);
+            if (random() % 4 == 0) views[random() % views.size()] = random_parallel_view();
+            if (random() % 8 == 0) views[random() % views.size()].position += point(0.1f);
+            if (random() % 12 == 0) views.resize(1 + random() % most, random_parallel_view());
+            if (f % 2) {
+                const size_t part = random() % 100 * 3;
+                const float far = log_uniform(1e-6f, f % 10 ? 0.02f : 0.5f);
+                for (size_t i = part; i < part + 60; ++i) positions[i] += point(far);
+                refit();
+            }
+            const Frame frame = run(cut, views, most, {}, 1, 16, &travel);
+            const CutRef expected = cut_ref(host, views, 1, 16);
+            ASSERT_TRUE(same(expected.cut, cut_of(frame, views.size())));
+            ASSERT_EQ(partition_violation(host, cut_of(frame, views.size()), uint(views.size())), "");
+            if (f > 0) evaluated += frame.report.lists.processed, needed += expected.tested;
+            for (const NodeView& nv : expected.cut) drawn += !bsh_is_leaf(nv.slot, host.leaves) && !nv.culled;
+        }
+        EXPECT_LT(evaluated, needed / 3);
+        EXPECT_GT(drawn, 1000u) << "cuts end above the leaves";
+    }
 }
 
 // 3.3: the twin evaluates everything in every frame, the device what is due; the cuts are the same.

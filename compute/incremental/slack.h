@@ -10,6 +10,8 @@
 // Bounds move too: a centre like the view itself; a radius changes f by about |dr|, and g by at most (q + r / t) |dr|, which of a slack takes at
 // most (q / 2 + 1) |dr| (t is concave in L and r together).
 //
+// Parallel views: g = sin_phi - q r alone, which a radius changes by q |dr|.
+//
 // What a view has travelled is summed up in two numbers, metres moved and radians (chords) turned; what the nodes of a block have, in two
 // more, metres of centres and of radii. An item's due is
 //     moved + reach turned + ways + slack     at the time it was evaluated, with |d| <= reach until then,
@@ -94,6 +96,10 @@ MYRIAD_FN float travelled(Travel t, float reach, float way) {
 
 // Metres; not positive: any movement may change it. `length` is |d|.
 MYRIAD_FN float node_slack(View view, vec3 d, float length, float r, uint height, uint where, float q) {
+    if (is_parallel(view)) {  // nothing is culled, and what is open depends on radii alone: sin_phi > q r where the node fits
+        if (height == 0u) return 1e30f;
+        return (abs(view.sin_phi - q * r) - slack_rounding * (view.sin_phi + q * r)) * (0.5f + 1.0f / q);
+    }
     const float reach = reach_of(d, r);
     const bool all_round = view.cos_phi < 0.0f && view.sin_phi == 0.0f;  // nothing is ever culled
     // The cull radius moves along a little: less than 2^-10 of the way.

@@ -16,9 +16,9 @@ uint32_t root_children(const Bsh& tree) {
 
 }  // namespace
 
-ManyLods::ManyLods(engine::Device& device)
-    : seed_(device, compute_kernels, "manylods/seed"), open_(device, compute_kernels, "manylods/open"),
-      walk_(device, compute_kernels, "manylods/walk") {}
+ManyLods::ManyLods(engine::Device& device, const engine::Constants& constants)
+    : seed_(device, compute_kernels, "manylods/seed", constants), open_(device, compute_kernels, "manylods/open", constants),
+      walk_(device, compute_kernels, "manylods/walk", constants) {}
 
 void ManyLods::record(engine::Recorder& recorder, AppendLists& lists, const ManyLodsInputs& in) const {
     assert(in.first_view + in.limit <= cut_max_views && in.tree.blocks() < cut_max_blocks);

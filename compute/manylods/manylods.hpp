@@ -18,7 +18,8 @@ struct ManyLodsInputs {
 
 class ManyLods {
 public:
-    explicit ManyLods(engine::Device& device);
+    // `constants`: parallel_constant, for parallel views.
+    explicit ManyLods(engine::Device& device, const engine::Constants& constants = {});
 
     // The basic approach (3.1): the cuts, as groups, in lists.kept(). lists.report() tells afterwards whether they fitted;
     // `processed` counts node-views tested. `limit` is at most lists.next_capacity(). A tree without samples has no cut.

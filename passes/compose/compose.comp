@@ -7,9 +7,13 @@ layout(push_constant, scalar) uniform Push { ComposePush push; };
 void main() {
     const uint i = thread_index();
     if (i >= push.count) return;
-    vec3 indirect = vec3(0.0f);
-    if (push.has_irradiance != 0u) indirect = push.albedo.at[i].xyz * push.irradiance.at[i].xyz * (1.0f / 3.14159265f);
-    if (push.has_mirrored != 0u) indirect += push.irradiance.at[push.count + i].xyz;
+    vec3 irradiance = vec3(0.0f);
+    vec3 mirrored = vec3(0.0f);
+    if (push.has_irradiance != 0u) irradiance = push.irradiance.at[i].xyz;
+    if (push.has_natural != 0u) irradiance += push.natural.at[i].xyz;
+    if (push.has_mirrored != 0u && push.has_irradiance != 0u) mirrored = push.irradiance.at[push.count + i].xyz;
+    if (push.has_mirrored != 0u && push.has_natural != 0u) mirrored += push.natural.at[push.count + i].xyz;
+    const vec3 indirect = push.albedo.at[i].xyz * irradiance * (1.0f / 3.14159265f) + mirrored;
     vec3 beauty = push.emitted.at[i].xyz + indirect;
     if (push.has_direct != 0u) beauty += push.direct.at[i].xyz;
     push.indirect.at[i] = vec4(indirect, 0.0f);

@@ -9,17 +9,19 @@ ComposePass::ComposePass(engine::Device& device, uint32_t width, uint32_t height
       beauty_(device, "images", "beauty", uint64_t(width) * height) {}
 
 void ComposePass::record(engine::Recorder& recorder, const GBuffer& gbuffer, const engine::Array<vec4>* irradiance,
-                         const engine::Array<vec4>* direct) {
+                         const engine::Array<vec4>* natural, const engine::Array<vec4>* direct) {
     recorder.dispatch(compose_,
                       ComposePush{.albedo = recorder.read(gbuffer.albedo),
                                   .emitted = recorder.read(gbuffer.emitted),
                                   .irradiance = irradiance ? recorder.read(*irradiance) : Float4s{},
+                                  .natural = natural ? recorder.read(*natural) : Float4s{},
                                   .direct = direct ? recorder.read(*direct) : Float4s{},
                                   .indirect = recorder.write(indirect_),
                                   .beauty = recorder.write(beauty_),
                                   .count = uint(gbuffer.pixels()),
                                   .has_irradiance = irradiance != nullptr,
-                                  .has_mirrored = irradiance && gbuffer.glossy(),
+                                  .has_natural = natural != nullptr,
+                                  .has_mirrored = gbuffer.glossy(),
                                   .has_direct = direct != nullptr},
                       gbuffer.pixels());
 }

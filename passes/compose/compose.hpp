@@ -10,8 +10,9 @@ class ComposePass {
 public:
     ComposePass(engine::Device& device, uint32_t width, uint32_t height);
 
-    // Null: the scene has no such light. `irradiance` has its second half where the G-buffer is glossy.
-    void record(engine::Recorder& recorder, const GBuffer& gbuffer, const engine::Array<vec4>* irradiance, const engine::Array<vec4>* direct);
+    // Null: the scene has no such light. `irradiance` of VPLs and `natural`, of the environment, have second halves where the G-buffer is glossy.
+    void record(engine::Recorder& recorder, const GBuffer& gbuffer, const engine::Array<vec4>* irradiance, const engine::Array<vec4>* natural,
+                const engine::Array<vec4>* direct);
 
     const engine::Array<vec4>& indirect() const { return indirect_; }
     const engine::Array<vec4>& beauty() const { return beauty_; }

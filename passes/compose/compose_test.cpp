@@ -13,14 +13,15 @@ protected:
     struct Result {
         std::vector<vec4> indirect, beauty;
     };
-    Result run(const HostGBuffer& host, const std::vector<vec4>* irradiance, const std::vector<vec4>* direct) {
+    Result run(const HostGBuffer& host, const std::vector<vec4>* irradiance, const std::vector<vec4>* natural, const std::vector<vec4>* direct) {
         const GBuffer gbuffer = host.on(device);
-        engine::Array<vec4> e, d;
+        engine::Array<vec4> e, n, d;
         if (irradiance) e = on_device(*irradiance);
+        if (natural) n = on_device(*natural);
         if (direct) d = on_device(*direct);
         ComposePass compose(device, host.width, host.height);
         engine::Recorder recorder(device);
-        compose.record(recorder, gbuffer, irradiance ? &e : nullptr, direct ? &d : nullptr);
+        compose.record(recorder, gbuffer, irradiance ? &e : nullptr, natural ? &n : nullptr, direct ? &d : nullptr);
         recorder.submit_and_wait();
         return {engine::download(device, compose.indirect()), engine::download(device, compose.beauty())};
     }
@@ -46,48 +47,50 @@ protected:
 TEST_F(ComposeTest, twin_knows_a_furnace) {
     HostGBuffer g(1, 1);
     g.albedo[0] = vec4(0.5f), g.emitted[0] = vec4(1);
-    const std::vector<vec4> irradiance{vec4(3.14159265f)}, direct{vec4(2)};
-    const ComposedRef c = compose_ref(g, &irradiance, &direct)[0];
-    EXPECT_NEAR(c.indirect.x, 0.5, 1e-7);
-    EXPECT_NEAR(c.beauty.x, 3.5, 1e-7);
+    const std::vector<vec4> irradiance{vec4(3.14159265f)}, natural{vec4(2 * 3.14159265f)}, direct{vec4(2)};
+    const ComposedRef c = compose_ref(g, &irradiance, &natural, &direct)[0];
+    EXPECT_NEAR(c.indirect.x, 1.5, 1e-7);
+    EXPECT_NEAR(c.beauty.x, 4.5, 1e-7);
 }
 
 TEST_F(ComposeTest, equals_the_twin_with_and_without_each_light) {
     for (const auto& [width, height] : {std::pair{1u, 1u}, {9u, 7u}, {64u, 1u}, {65u, 33u}}) {
         const HostGBuffer g = random_gbuffer(width, height);
-        const auto irradiance = random_image(g.pixels(), 9), direct = random_image(g.pixels(), 3);
-        for (const auto* e : {&irradiance, (const std::vector<vec4>*)nullptr})
-            for (const auto* d : {&direct, (const std::vector<vec4>*)nullptr}) {
-                const Result got = run(g, e, d);
-                EXPECT_EQ(differing(compose_ref(g, e, d), got), 0u) << width << "x" << height << (e ? ", indirect" : "") << (d ? ", direct" : "");
-                for (size_t i = 0; i < g.pixels(); ++i) EXPECT_TRUE(got.indirect[i].w == 0 && got.beauty[i].w == 1 && (e || got.indirect[i] == vec4(0)));
-            }
+        const auto irradiance = random_image(g.pixels(), 9), natural = random_image(g.pixels(), 9), direct = random_image(g.pixels(), 3);
+        for (int lights = 0; lights < 8; ++lights) {
+            const auto *e = lights & 1 ? &irradiance : nullptr, *n = lights & 2 ? &natural : nullptr, *d = lights & 4 ? &direct : nullptr;
+            const Result got = run(g, e, n, d);
+            EXPECT_EQ(differing(compose_ref(g, e, n, d), got), 0u) << width << "x" << height << ", lights " << lights;
+            for (size_t i = 0; i < g.pixels(); ++i) EXPECT_TRUE(got.indirect[i].w == 0 && got.beauty[i].w == 1 && (e || n || got.indirect[i] == vec4(0)));
+        }
     }
 }
 
 TEST_F(ComposeTest, lobes_add_what_they_reflect) {
     HostGBuffer g = random_gbuffer(13, 5);
     g.shine(0, vec3(1), 0.5f, vec3(0, 0, 1));
-    const auto both = random_image(2 * g.pixels(), 9);
-    const Result got = run(g, &both, nullptr);
-    EXPECT_EQ(differing(compose_ref(g, &both, nullptr), got), 0u);
+    const auto both = random_image(2 * g.pixels(), 9), of_sky = random_image(2 * g.pixels(), 9);
+    const Result got = run(g, &both, nullptr, nullptr);
+    EXPECT_EQ(differing(compose_ref(g, &both, nullptr, nullptr), got), 0u);
+    EXPECT_EQ(differing(compose_ref(g, nullptr, &of_sky, nullptr), run(g, nullptr, &of_sky, nullptr)), 0u);
+    EXPECT_EQ(differing(compose_ref(g, &both, &of_sky, nullptr), run(g, &both, &of_sky, nullptr)), 0u);
     for (size_t i = 0; i < g.pixels(); ++i) EXPECT_GT(got.indirect[i].x, both[g.pixels() + i].x);
-    EXPECT_EQ(differing(compose_ref(g, nullptr, nullptr), run(g, nullptr, nullptr)), 0u);
+    EXPECT_EQ(differing(compose_ref(g, nullptr, nullptr, nullptr), run(g, nullptr, nullptr, nullptr)), 0u);
 }
 
 TEST_F(ComposeTest, nothing_lit_is_black_but_for_what_shines) {
     HostGBuffer g = random_gbuffer(8, 8);
-    const Result shining = run(g, nullptr, nullptr);
+    const Result shining = run(g, nullptr, nullptr, nullptr);
     for (size_t i = 0; i < g.pixels(); ++i) EXPECT_EQ(vec3(shining.beauty[i]), vec3(g.emitted[i]));
     g.emitted.assign(g.pixels(), vec4(0));
-    for (const vec4& v : run(g, nullptr, nullptr).beauty) EXPECT_EQ(v, vec4(0, 0, 0, 1));
+    for (const vec4& v : run(g, nullptr, nullptr, nullptr).beauty) EXPECT_EQ(v, vec4(0, 0, 0, 1));
 }
 
 TEST_F(ComposeTest, comparator_sees_a_wrong_pixel) {
     const HostGBuffer g = random_gbuffer(8, 8);
     const auto irradiance = random_image(g.pixels(), 9);
-    const auto expected = compose_ref(g, &irradiance, nullptr);
-    Result got = run(g, &irradiance, nullptr);
+    const auto expected = compose_ref(g, &irradiance, nullptr, nullptr);
+    Result got = run(g, &irradiance, nullptr, nullptr);
     ASSERT_EQ(differing(expected, got), 0u);
     got.indirect[7] *= 1.001f;
     EXPECT_EQ(differing(expected, got), 1u);

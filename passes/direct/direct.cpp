@@ -23,7 +23,7 @@ void DirectPass::record(engine::Recorder& recorder, const GBuffer& gbuffer, cons
     recorder.fill(exhausted_, 0);
     uint32_t first = 0;
     do {
-        const uint32_t last = first + std::min(lights.punctual() - first, lights_a_dispatch_);
+        const uint32_t last = first + std::min(lights.lamps() - first, lights_a_dispatch_);
         recorder.dispatch(direct_,
                           DirectPush{.gbuffer = gbuffer.read(recorder),
                                      .bvh = bvh.read(recorder),
@@ -34,7 +34,7 @@ void DirectPass::record(engine::Recorder& recorder, const GBuffer& gbuffer, cons
                                      .last = last},
                           gbuffer.pixels());
         first = last;
-    } while (first < lights.punctual());
+    } while (first < lights.lamps());
 }
 
 }  // namespace myriad::passes

@@ -10,8 +10,8 @@ namespace myriad::passes {
 
 class DirectPass {
 public:
-    // Create one only where it has something to do.
-    static bool needed(const LightTable& lights) { return lights.has_punctual(); }
+    // Create one only where it has something to do. Lights that stand for an environment are not its business.
+    static bool needed(const LightTable& lights) { return lights.lamps() > 0; }
 
     // `variant` says with glossy_constant whether the G-buffer has gloss. `lights_a_dispatch`: at most so many are looped over at once; 0: what Device::loop_limit() allows.
     DirectPass(engine::Device& device, uint32_t width, uint32_t height, uint32_t lights_a_dispatch = 0,

@@ -10,17 +10,18 @@ using engine::passes_kernels;
 
 namespace {
 
-engine::Program program(engine::Device& device, GatherVisibility visibility, engine::Constants variant, bool glossy) {
+engine::Program program(engine::Device& device, GatherVisibility visibility, engine::Constants variant, bool glossy, bool far) {
     variant[glossy_constant] = glossy;
+    variant[parallel_constant] = far;
     if (visibility == GatherVisibility::rays) return {device, passes_kernels, "gather/rays", variant};
-    return {device, passes_kernels, "gather/maps", {{2, visibility == GatherVisibility::maps}, {glossy_constant, glossy}}};
+    return {device, passes_kernels, "gather/maps", {{2, visibility == GatherVisibility::maps}, {glossy_constant, glossy}, {parallel_constant, far}}};
 }
 
 }  // namespace
 
 GatherPass::GatherPass(engine::Device& device, GatherVisibility visibility, uint32_t width, uint32_t height,
-                       const engine::Constants& variant, bool glossy)
-    : device_(device), visibility_(visibility), program_(program(device, visibility, variant, glossy)),
+                       const engine::Constants& variant, bool glossy, bool far)
+    : device_(device), visibility_(visibility), program_(program(device, visibility, variant, glossy, far)),
       irradiance_(device, "images", "irradiance", uint64_t(width) * height * (glossy ? 2 : 1)) {}
 
 uint32_t GatherPass::max_vpls(uint32_t block) const {
@@ -45,6 +46,7 @@ void GatherPass::record_maps(engine::Recorder& recorder, const GatherInputs& in,
                                      .count = recorder.read(in.count),
                                      .atlas = atlas ? recorder.read(*atlas) : Uints{},
                                      .failed = lists ? recorder.read(lists->state(), compute::AppendLists::failed_word) : Uints{},
+                                     .views = atlas && in.views ? recorder.read(*in.views) : Views{},
                                      .irradiance = recorder.write(irradiance_),
                                      .first = first + done,
                                      .limit = std::min(part, limit - done),

@@ -19,14 +19,15 @@ struct GatherInputs {
     const engine::Array<Vpl>& vpls;
     const engine::Array<uint>& count;  // on the device
     uint32_t block = 1;                // k: each pixel gathers one of k x k sets
-    float bound = 1e30f;               // 1/m^2
+    float bound = 1e30f;               // 1/m^2; far lights have none
+    const engine::Array<View>* views = nullptr;  // maps of far lights: their views
 };
 
 class GatherPass {
 public:
-    // `glossy`: for a G-buffer with gloss.
+    // `glossy`: for a G-buffer with gloss. `far`: the lights are infinitely far, each a far_light() with a parallel view.
     GatherPass(engine::Device& device, GatherVisibility visibility, uint32_t width, uint32_t height, const engine::Constants& variant = {},
-               bool glossy = false);
+               bool glossy = false, bool far = false);
 
     void clear(engine::Recorder& recorder) { recorder.fill(irradiance_, 0); }
 

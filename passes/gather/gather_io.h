@@ -3,6 +3,7 @@
 #define MYRIAD_PASSES_GATHER_IO_H
 
 #include "compute/views/paraboloid.h"
+#include "compute/views/parallel.h"
 #include "passes/gbuffer/gbuffer_io.h"
 #include "passes/vpl/vpl_io.h"
 
@@ -13,6 +14,7 @@ struct GatherPush {
     Uints count;              // how many VPLs there are
     Uints atlas;              // maps only: of VPLs [first_map, …)
     Uints failed;             // maps only, may be null: failed.at[0] != 0 says that the atlas is not complete, and nothing is added
+    Views views;              // maps of far lights only: of all of them
     Float4s irradiance;       // glossy: then, pixel by pixel, what lobes reflect of the same light (radiance)
     uint first, limit;        // VPLs [first, min(first + limit, count)); first is a multiple of block^2
     uint block;               // k: sets of VPLs, and pixels of a block, are k x k
@@ -62,6 +64,28 @@ MYRIAD_FN Transfer transfer_of(vec3 x, vec3 n, Lobe lobe, vec3 vpl_position, vec
     t.diffuse *= r.diffuse;
     // A patch of radiance F / (pi a) is reflected as brightly at most: flux / pi * glossy <= F / (pi a), with a = pi / bound.
     t.glossy = min(r.glossy * g, bound * (1.0f / pi));
+    t.power = r.power;
+    return t;
+}
+
+// Likewise of a far light: flux / pi is its irradiance. n_g is the receiver's geometric normal: light from behind the surface does not come
+// through, whatever the shading normal says.
+MYRIAD_FN Transfer far_transfer(vec3 n, vec3 n_g, Lobe lobe, Vpl light) {
+    Transfer t;
+    t.diffuse = 0.0f;
+    t.glossy = 0.0f;
+    t.power = 0.0f;
+    const vec3 to_light = far_direction(light);
+    const float cosine = dot(n, to_light);
+    if (!(cosine > 0.0f && dot(n_g, to_light) > 0.0f)) return t;
+    t.diffuse = cosine;
+    if (lobe.alpha2 == 0.0f) return t;
+    // As transfer_of: the light stands for a part of the sky, a disc of radius sqrt(solid angle / pi), which widens the lobe, and is
+    // reflected no brighter than it is: irradiance * glossy <= irradiance / solid angle.
+    const float solid_angle = far_solid_angle(light);
+    const Reflectance r = reflectance_of(lobe, n, to_light, solid_angle * (1.0f / pi));
+    t.diffuse *= r.diffuse;
+    t.glossy = min(r.glossy * cosine, 1.0f / max(solid_angle, 1e-30f));
     t.power = r.power;
     return t;
 }
@@ -122,6 +146,45 @@ MYRIAD_FN float map_blend(MapQuery q, vec4 seen) {
     const float above = mix(seen.x, seen.y, q.weight.x);
     const float below = mix(seen.z, seen.w, q.weight.x);
     return mix(above, below, q.weight.y);
+}
+
+// The same for the map of a far light, which is that of a parallel view: the plane's depth changes evenly from texel to texel.
+struct ParallelQuery {
+    float depth, across, down;  // metres: of x; how much deeper its plane is a texel further on
+    float bias;
+    uint columns, rows;
+    int x, y;
+    vec2 weight;                // as MapQuery; (x + weight.x, y + weight.y) is where x lies
+};
+MYRIAD_FN ParallelQuery parallel_query(vec3 x, vec3 n_g, View view, uint size, float bias) {
+    const vec3 d = x - view.position;
+    const ParallelFrame frame = parallel_frame(view.direction);
+    const float texel = parallel_texel(view, size);
+    const vec2 place = parallel_place(view, frame, d, size) - vec2(0.5f, 0.5f);
+    const float slope = -texel / dot(view.direction, n_g);
+    ParallelQuery q;
+    q.columns = parallel_columns(view);
+    q.rows = parallel_rows(view, size);
+    q.depth = dot(d, view.direction);
+    q.across = slope * dot(frame.across, n_g);
+    q.down = slope * dot(frame.down, n_g);
+    q.bias = bias * 0.70710678f * texel;
+    q.x = map_first(place.x, q.columns);
+    q.y = map_first(place.y, q.rows);
+    q.weight = clamp(place - vec2(float(q.x), float(q.y)), vec2(0.0f), vec2(1.0f));
+    return q;
+}
+MYRIAD_FN MapTexel parallel_map_texel(ParallelQuery q, int right, int below) {
+    const int tx = clamp(q.x + right, 0, int(q.columns) - 1);
+    const int ty = clamp(q.y + below, 0, int(q.rows) - 1);
+    const float on_plane = q.depth + (float(tx - q.x) - q.weight.x) * q.across + (float(ty - q.y) - q.weight.y) * q.down;
+    MapTexel t;
+    t.index = uint(ty) * q.columns + uint(tx);
+    t.distance = (on_plane > 0.0f && on_plane < q.depth ? on_plane : q.depth) - q.bias;
+    return t;
+}
+MYRIAD_FN float parallel_blend(ParallelQuery q, vec4 seen) {
+    return mix(mix(seen.x, seen.y, q.weight.x), mix(seen.z, seen.w, q.weight.x), q.weight.y);
 }
 
 // Which pixel a thread works on, so that the threads of a workgroup share their set: sets are laid out one after the other, each

@@ -45,6 +45,58 @@ std::vector<GatherRef> gather_ref(const HostGBuffer& gbuffer, const std::vector<
     return out;
 }
 
+std::vector<GatherRef> far_gather_ref(const HostGBuffer& gbuffer, const std::vector<Vpl>& lights, uint block, const SeenRef& seen) {
+    std::vector<GatherRef> out(gbuffer.pixels());
+    for (size_t p = 0; p < out.size(); ++p) {
+        if (!gbuffer.hit(p)) continue;
+        const size_t x = p % gbuffer.width, y = p / gbuffer.width;
+        for (size_t i = x % block + y % block * block; i < lights.size(); i += block * block) {
+            const dvec3 to_light(far_direction(lights[i])), n(gbuffer.shading(p));
+            const double cosine = dot(n, to_light), over = dot(dvec3(gbuffer.geometric(p)), to_light), solid_angle = far_solid_angle(lights[i]);
+            if (std::min(cosine, over) < -1e-6) continue;
+            Seen s = seen(p, i);
+            if (std::min(cosine, over) < 1e-6) s = {0.5 * s.share, s.slack + 0.5 * s.share};
+            const dvec3 irradiance = dvec3(lights[i].flux) / std::numbers::pi * double(block * block);
+            const Lobe lobe = gbuffer.lobe(p);
+            const BrdfRef f = brdf_ref(gbuffer.gloss_ref(p), n, dvec3(lobe.view), to_light, solid_angle / std::numbers::pi);
+            const double diffuse = std::numbers::pi * f.diffuse * std::max(cosine, 0.0);
+            out[p].irradiance += irradiance * (diffuse * s.share);
+            out[p].slack += irradiance * (diffuse * s.slack + 4e-7 * (s.share + s.slack));
+            const double glossy = std::min(f.glossy * std::max(cosine, 0.0), 1 / solid_angle);
+            out[p].mirrored += irradiance * f.fresnel * glossy * s.share;
+            const double half_width = std::sqrt(lobe.alpha2 + solid_angle / std::numbers::pi);
+            const double doubt = std::min(4e-7 / std::max(cosine, 1e-9) + 2e-6 / (half_width * length(to_light + dvec3(lobe.view))) + 1e-3, 1.0);
+            out[p].mirrored_slack += irradiance * f.fresnel * glossy * (s.slack + doubt * (s.share + s.slack));
+        }
+        out[p].slack += 1e-5 * out[p].irradiance;
+        out[p].mirrored_slack += 1e-5 * out[p].mirrored;
+    }
+    return out;
+}
+
+Seen parallel_seen_ref(const dvec3& x, const dvec3& n_g, const View& view, const uint* map, uint size, double bias) {
+    const ParallelFrame frame = parallel_frame(view.direction);
+    const dvec3 d = x - dvec3(view.position), n(view.direction), across(frame.across), down(frame.down);
+    const double side = 2.0 * double(view.sin_phi) / size, depth = dot(d, n), slope = dot(n, n_g);
+    const uint columns = parallel_columns(view), rows = parallel_rows(view, size);
+    const dvec2 place(dot(d, across) / side - 0.5, dot(d, down) / side - 0.5);
+    if (std::abs(slope) < 1e-5) return seen_unsure;
+    Seen seen{0, 1e-6 * (columns + rows)};
+    for (int i = 0; i < 4; ++i) {
+        const dvec2 whole = floor(place) + dvec2(i % 2, i / 2), overlap = 1.0 - abs(place - whole);
+        const double weight = overlap.x * overlap.y;
+        const dvec2 texel = clamp(whole, dvec2(0), dvec2(columns - 1, rows - 1)), off = side * (texel - place);
+        // Where the texel's line of sight meets the receiver's plane.
+        const double on_plane = depth - dot(off.x * across + off.y * down, n_g) / slope;
+        const double limit = (on_plane > 0 ? std::min(on_plane, depth) : depth) - bias * side * std::numbers::sqrt2 / 2;
+        const double rounding = 2e-6 * (depth + side * (columns + rows)) / std::abs(slope);
+        const double stored = uintBitsToFloat(map[uint(texel.y) * columns + uint(texel.x)]);
+        if (std::abs(stored - limit) <= rounding) seen.share += 0.5 * weight, seen.slack += 0.5 * weight;
+        else if (stored >= limit) seen.share += weight;
+    }
+    return seen;
+}
+
 Seen map_seen_ref(const dvec3& x, const dvec3& n_g, const dvec3& vpl, const uint* map, uint size, double bias) {
     const dvec3 d = x - vpl;
     const double distance = length(d), facing = dot(d, n_g) / distance;

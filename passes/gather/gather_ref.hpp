@@ -26,6 +26,13 @@ using SeenRef = std::function<Seen(size_t pixel, size_t vpl)>;
 std::vector<GatherRef> gather_ref(const HostGBuffer& gbuffer, const std::vector<Vpl>& vpls, uint block, double bound,
                                   const SeenRef& seen = [](size_t, size_t) { return seen_whole; });
 
+// The same of lights that are infinitely far (far_light).
+std::vector<GatherRef> far_gather_ref(const HostGBuffer& gbuffer, const std::vector<Vpl>& lights, uint block,
+                                      const SeenRef& seen = [](size_t, size_t) { return seen_whole; });
+
+// What the map of a parallel view lets its light see of the receiver x.
+Seen parallel_seen_ref(const glm::dvec3& x, const glm::dvec3& n_g, const View& view, const uint* map, uint size, double bias);
+
 // What a VPL's map (map_texels(size) words) lets it see of the receiver x of geometric normal n_g.
 Seen map_seen_ref(const glm::dvec3& x, const glm::dvec3& n_g, const glm::dvec3& vpl, const uint* map, uint size, double bias);
 

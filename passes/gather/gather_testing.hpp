@@ -50,14 +50,16 @@ protected:
         const std::vector<uint>* atlas = nullptr;
         uint map_size = 0;
         float bias = 0;
+        const std::vector<View>* far = nullptr;  // the lights are infinitely far, and these their views
     };
     // None, or maps when there is an atlas.
     std::vector<vec4> run(const HostGBuffer& host, const std::vector<Vpl>& vpls, const Options& o) {
         const GBuffer gbuffer = host.on(device);
         const auto on = on_device(vpls);
         const auto count = on_device(std::vector<uint>{uint(vpls.size())});
-        GatherPass gather(device, o.atlas ? GatherVisibility::maps : GatherVisibility::none, host.width, host.height, {}, gbuffer.glossy());
-        const GatherInputs in{gbuffer, on, count, o.block, o.bound};
+        GatherPass gather(device, o.atlas ? GatherVisibility::maps : GatherVisibility::none, host.width, host.height, {}, gbuffer.glossy(), o.far);
+        const auto views = on_device(o.far ? *o.far : std::vector<View>{view_of_nothing()});
+        const GatherInputs in{gbuffer, on, count, o.block, o.bound, o.far ? &views : nullptr};
         const uint32_t all = uint32_t(vpls.size()) + o.beyond;
         std::vector<uint32_t> parts = o.parts;
         if (parts.empty()) parts = {all};

@@ -16,6 +16,16 @@ float seen_in_map(vec3 x, vec3 n_g, vec3 vpl_position, uint map) {
     return map_blend(q, vec4(seen_in_texel(q, 0, 0, map), seen_in_texel(q, 1, 0, map), seen_in_texel(q, 0, 1, map), seen_in_texel(q, 1, 1, map)));
 }
 
+float seen_in_parallel_texel(ParallelQuery q, int right, int below, uint map) {
+    const MapTexel t = parallel_map_texel(q, right, below);
+    return map_seen(uintBitsToFloat(push.atlas.at[map + t.index]), t);
+}
+float seen_in_parallel_map(vec3 x, vec3 n_g, View view, uint map) {
+    const ParallelQuery q = parallel_query(x, n_g, view, push.map_size, push.bias);
+    return parallel_blend(q, vec4(seen_in_parallel_texel(q, 0, 0, map), seen_in_parallel_texel(q, 1, 0, map),
+                                  seen_in_parallel_texel(q, 0, 1, map), seen_in_parallel_texel(q, 1, 1, map)));
+}
+
 void main() {
     const GatherPixel pixel = gather_pixel(workgroup_index(), gl_LocalInvocationIndex, gl_WorkGroupSize.x, push.gbuffer.width,
                                            push.gbuffer.height, push.block);
@@ -43,9 +53,14 @@ void main() {
     // The index depends on the workgroup alone, so a VPL is read once for all its lanes.
     for (uint i = push.first + pixel.set; i < end; i += sets) {
         const Vpl vpl = push.vpls.at[i];
-        const Transfer t = transfer_of(x, n, lobe, vpl.position, unpack_direction(vpl.normal), push.bound);
+        Transfer t;
+        if (parallel_views) t = far_transfer(n, n_g, lobe, vpl);
+        else t = transfer_of(x, n, lobe, vpl.position, unpack_direction(vpl.normal), push.bound);
         if (t.diffuse > 0.0f) {
-            const float seen = use_maps ? seen_in_map(x, n_g, vpl.position, (i - push.first_map) * map_texels(push.map_size)) : 1.0f;
+            const uint map = (i - push.first_map) * map_texels(push.map_size);
+            float seen = 1.0f;
+            if (use_maps && parallel_views) seen = seen_in_parallel_map(x, n_g, push.views.at[i], map);
+            else if (use_maps) seen = seen_in_map(x, n_g, vpl.position, map);
             sum += vpl.flux * (t.diffuse * seen * scale);
             if (glossy) mirrored += vpl.flux * (t.glossy * seen * scale) * brdf_fresnel(lobe.f0, t.power);
         }

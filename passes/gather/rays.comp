@@ -17,7 +17,8 @@ void main() {
     const vec3 x = position.xyz;
     const uvec2 normals = push.gbuffer.normals.at[p];
     const vec3 n = unpack_direction(normals.x);
-    const vec3 origin = ray_origin(x, unpack_direction(normals.y), push.bvh.reach);
+    const vec3 n_g = unpack_direction(normals.y);
+    const vec3 origin = ray_origin(x, n_g, push.bvh.reach);
 
     Lobe lobe = matte_lobe();
     if (glossy) lobe = lobe_of(push.gbuffer.gloss.at[p], n);
@@ -31,10 +32,14 @@ void main() {
     if (glossy && receives) mirrored = push.irradiance.at[pixels + p].xyz;
     for (uint i = push.first + pixel.set; i < end; i += sets) {
         const Vpl vpl = push.vpls.at[i];
-        const Transfer t = transfer_of(x, n, lobe, vpl.position, unpack_direction(vpl.normal), push.bound);
+        Transfer t;
+        if (parallel_views) t = far_transfer(n, n_g, lobe, vpl);
+        else t = transfer_of(x, n, lobe, vpl.position, unpack_direction(vpl.normal), push.bound);
         const bool asks = receives && t.diffuse > 0.0f;
         if (!subgroupAny(asks)) continue;
-        if (trace_occluded(push.bvh, origin, vpl.position - origin, 0.0f, asks ? 1.0f : -1.0f) || !asks) continue;
+        const vec3 way = parallel_views ? far_direction(vpl) : vpl.position - origin;
+        const float far = parallel_views ? 1e30f : 1.0f;
+        if (trace_occluded(push.bvh, origin, way, 0.0f, asks ? far : -1.0f) || !asks) continue;
         sum += vpl.flux * (t.diffuse * scale);
         if (glossy) mirrored += vpl.flux * (t.glossy * scale) * brdf_fresnel(lobe.f0, t.power);
     }

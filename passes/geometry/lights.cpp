@@ -120,6 +120,7 @@ LightData light_data(const scenes::Scene& scene, const scenes::Triangles& triang
         data.powers.push_back(power_of(data.lights.back()));
     }
     data.punctual = uint32_t(data.lights.size());
+    if (scene.environment) data.environment = uint32_t(scene.environment->solid_angles.size());
 
     const Radiometer radiometer(triangles, geometry);
     if (radiometer.any_shines()) geometry.world.for_each([&](uint32_t i, uint32_t stored, const Corners& corners) {

@@ -15,6 +15,7 @@ struct LightData {
     std::vector<Light> lights;
     std::vector<double> powers;  // W, mean of R, G, B, a light: what `cdf` shares out
     uint32_t punctual = 0;       // the first so many; the rest are emissive triangles
+    uint32_t environment = 0;    // the last so many of the punctual ones stand for the environment
     double power = 0;            // of all
     std::vector<Emitter> moving; // the emissive triangles that do; all of them, for one without area may get some
 };
@@ -46,7 +47,7 @@ public:
     const engine::Array<Light>& array() const { return lights_; }
     uint32_t count() const { return uint32_t(lights_.count()); }
     uint32_t punctual() const { return data_.punctual; }
-    bool has_punctual() const { return punctual() > 0; }
+    uint32_t lamps() const { return data_.punctual - data_.environment; }  // the punctual ones that stand for nothing else, which are first
     bool has_emissive() const { return count() > punctual(); }
     double power() const { return data_.power; }   // 0: nothing shines
     const LightData& data() const { return data_; }  // for who weighs the lights anew

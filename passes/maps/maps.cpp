@@ -10,13 +10,24 @@ namespace {
 
 uint32_t round_up(uint32_t value, uint32_t multiple) { return (value + multiple - 1) / multiple * multiple; }
 
+engine::Constants kind_of_views(const MapSettings& settings) { return {{parallel_constant, settings.parallel}}; }
+
 uint64_t atlas_words(uint32_t views, uint32_t map_size) { return uint64_t(views) * map_texels(map_size); }
 
 }  // namespace
 
+MapCounters& MapCounters::operator+=(const MapCounters& other) {
+    node_views += other.node_views, invalid += other.invalid, cut += other.cut, groups += other.groups;
+    list_peak = std::max(list_peak, other.list_peak), list_capacity = std::max(list_capacity, other.list_capacity);
+    batches += other.batches, redone += other.redone, triangle_views += other.triangle_views;
+    if (other.maps_drawn) maps_drawn = maps_drawn.value_or(0) + *other.maps_drawn;
+    return *this;
+}
+
 ViewMaps::ViewMaps(engine::Device& device, const MapSettings& settings, uint32_t max_views, uint32_t multiple, const compute::WorldTriangles* world,
                    const IsmScene* ism)
     : device_(device), settings_(settings), batch_(round_up(std::max(max_views, 1u), multiple)), multiple_(multiple) {
+    assert(!settings.parallel || settings.method == MapMethod::manylods);
     SplatPass::check_map_size(device, settings.map_size);
     // Before the atlas, which takes its share of what memory they leave.
     if (settings.method == MapMethod::brute) brute_.emplace(device, *world);
@@ -24,9 +35,9 @@ ViewMaps::ViewMaps(engine::Device& device, const MapSettings& settings, uint32_t
     while (batch_ > multiple_ && !is_handy(batch_)) halve();
     make_atlas();
     if (settings.method != MapMethod::manylods) return;
-    splat_.emplace(device);
+    splat_.emplace(device, kind_of_views(settings));
     if (settings.update != CutUpdate::basic) return;  // lists come with the first frame, one a batch
-    manylods_.emplace(device);
+    manylods_.emplace(device, kind_of_views(settings));
     const uint64_t affordable = device_.memory_free() / 2 / (4 * sizeof(uvec2));
     const uint64_t kept = std::min({groups_guess(batch_), affordable, AppendLists::max_capacity});
     make_lists(std::max<uint64_t>(kept - kept / 4, batch_), std::max<uint64_t>(kept, 1));
@@ -63,7 +74,7 @@ void ViewMaps::make_lists(uint64_t next, uint64_t kept) {
 void ViewMaps::make_carried(uint32_t index, uint64_t capacity) {
     if (carried_.size() <= index) carried_.resize(index + 1);
     carried_[index].reset();
-    carried_[index] = std::make_unique<compute::CarriedCut>(device_, settings_.append, capacity, index * batch_, batch_);
+    carried_[index] = std::make_unique<compute::CarriedCut>(device_, settings_.append, capacity, index * batch_, batch_, kind_of_views(settings_));
 }
 
 void ViewMaps::record(engine::Recorder& recorder, const MapScene& scene, const engine::Array<View>& views, const engine::Array<uint>& count,

@@ -36,6 +36,7 @@ struct MapSettings {
     uint32_t seed = 1;        // ism
     CutUpdate update = CutUpdate::basic;
     uint32_t lazy_edges = 1;  // q of the paper, at least 1
+    bool parallel = false;    // manylods: views are parallel ones (compute/views/parallel.h), all of them
     bool revalidate = false;  // incremental and lazy: every node-view in every frame, as the paper does
 };
 
@@ -54,6 +55,8 @@ struct MapCounters {
     uint64_t list_peak = 0, list_capacity = 0;  // items of the longest list, and what there was room for
     uint32_t batches = 0, redone = 0;
     uint64_t triangle_views = 0;  // brute: triangles, each in every view
+
+    MapCounters& operator+=(const MapCounters& other);
 };
 
 class ViewMaps {

@@ -25,8 +25,32 @@ void draw_half(Splat s, uint half_index, uint map) {
     }
 }
 
+void draw_parallel(View view, Splat s, ParallelFrame frame, uint map) {
+    const uint columns = parallel_columns(view);
+    const float texel = parallel_texel(view, push.map_size), radius = s.radius / texel;
+    const vec2 middle = parallel_place(view, frame, s.d, push.map_size);
+    const uint x0 = parallel_first(middle.x, radius, columns), x1 = parallel_end(middle.x, radius, columns);
+    const uint y1 = parallel_end(middle.y, radius, parallel_rows(view, push.map_size));
+    if (x0 >= x1) return;
+    uint x = x0;
+    for (uint y = parallel_first(middle.y, radius, parallel_rows(view, push.map_size)); y < y1;) {
+        const vec3 off = ((float(x) + 0.5f - middle.x) * texel) * frame.across + ((float(y) + 0.5f - middle.y) * texel) * frame.down;
+        const float depth = splat_parallel_depth(s, view.direction, off);
+        if (depth > 0.0f) atomicMin(push.atlas.at[map + y * columns + x], floatBitsToUint(depth));
+        ++x;
+        if (x == x1) {
+            x = x0;
+            ++y;
+        }
+    }
+}
+
 void draw(View view, Sphere sphere, uint cone, uvec2 box, uint map) {
     const Splat s = splat_of(view, sphere, cone, box);
+    if (is_parallel(view)) {
+        draw_parallel(view, s, parallel_frame(view.direction), map);
+        return;
+    }
     if (s.height == 0.0f) return;  // seen edge-on
     const uint near = half_of(s.d);
     draw_half(s, near, map);

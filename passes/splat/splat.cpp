@@ -5,9 +5,11 @@
 namespace myriad::passes {
 
 // A leaf around the view may scan its whole map. Where an invocation's loops are limited it draws one node, not eight.
-SplatPass::SplatPass(engine::Device& device)
-    : device_(device), threads_per_group_(device.loop_limit() == ~0u ? 1 : 8),
-      splat_(device, engine::passes_kernels, "splat/splat", {{2, threads_per_group_}}), grid_(device) {}
+SplatPass::SplatPass(engine::Device& device, engine::Constants constants)
+    : device_(device), threads_per_group_(device.loop_limit() == ~0u ? 1 : 8), splat_([&] {
+          constants[2] = threads_per_group_;
+          return engine::Program(device, engine::passes_kernels, "splat/splat", constants);
+      }()), grid_(device) {}
 
 void SplatPass::check_map_size(const engine::Device& device, uint32_t map_size) {
     if (map_size < 2 || map_size > 1024 || map_texels(map_size) > device.loop_limit() - 1024)

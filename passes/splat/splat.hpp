@@ -21,7 +21,8 @@ struct SplatInputs {
 
 class SplatPass {
 public:
-    explicit SplatPass(engine::Device& device);
+    // `constants`: parallel_constant, for parallel views.
+    explicit SplatPass(engine::Device& device, engine::Constants constants = {});
 
     // Throws InputError when maps of this size cannot be drawn on the device (a driver that limits loops).
     static void check_map_size(const engine::Device& device, uint32_t map_size);

@@ -6,6 +6,7 @@
 #include "compute/manylods/cut_io.h"
 #include "compute/opacity/opacity_io.h"
 #include "compute/views/paraboloid.h"
+#include "compute/views/parallel.h"
 
 MYRIAD_BEGIN
 const uint atlas_nothing = 0x7f800000u;  // +infinity: no surface in this texel
@@ -64,7 +65,8 @@ MYRIAD_FN Splat splat_of(View view, Sphere sphere, uint cone, uvec2 box_code) {
     Splat s;
     s.d = sphere.center - view.position;
     s.radius = sphere.radius;
-    const SplatPlane plane = splat_plane(s.d, s.radius, bsh_cone_axis(cone), (cone >> 24) == 255u);
+    const bool faces = (cone >> 24) == 255u;
+    const SplatPlane plane = splat_plane(s.d, s.radius, faces && is_parallel(view) ? view.direction : bsh_cone_axis(cone), faces && !is_parallel(view));
     s.normal = plane.normal;
     s.height = plane.height;
     const BshBox box = bsh_decode_box(box_code, sphere.radius);
@@ -79,6 +81,18 @@ MYRIAD_FN float splat_depth(Splat s, vec3 w) {
     const float t = s.height / dot(w, s.normal);  // may be infinite or NaN: the comparisons below then fail
     const vec3 q = t * w - s.d;
     const bool inside = q.x >= s.low.x && q.y >= s.low.y && q.z >= s.low.z && q.x <= s.high.x && q.y <= s.high.y && q.z <= s.high.z;
+    return t > 0.0f && inside ? t : -1.0f;
+}
+
+// The same for a parallel view, whose texel's line of sight along the unit direction n passes the centre at `off`, perpendicular to n.
+// A plane that is seen edge-on covers nothing.
+MYRIAD_FN float splat_parallel_depth(Splat s, vec3 n, vec3 off) {
+    const float slope = dot(n, s.normal);
+    if (!(abs(slope) > splat_edge_on)) return -1.0f;
+    const float along = -dot(off, s.normal) / slope;  // from the centre
+    const vec3 q = off + along * n;
+    const bool inside = q.x >= s.low.x && q.y >= s.low.y && q.z >= s.low.z && q.x <= s.high.x && q.y <= s.high.y && q.z <= s.high.z;
+    const float t = dot(s.d, n) + along;
     return t > 0.0f && inside ? t : -1.0f;
 }
 

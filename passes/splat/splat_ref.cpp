@@ -21,6 +21,21 @@ void draw(const Splat& s, uint size, uint* map) {
     }
 }
 
+void draw_parallel(const View& view, const Splat& s, uint size, uint* map) {
+    const ParallelFrame frame = parallel_frame(view.direction);
+    const vec2 middle = parallel_place(view, frame, s.d, size);
+    const uint columns = parallel_columns(view);
+    const float texel = parallel_texel(view, size), radius = s.radius / texel;
+    for (uint y = 0; y < parallel_rows(view, size); ++y)
+        for (uint x = 0; x < columns; ++x) {
+            if (x < parallel_first(middle.x, radius, columns) || x >= parallel_end(middle.x, radius, columns)) continue;
+            if (y < parallel_first(middle.y, radius, parallel_rows(view, size)) || y >= parallel_end(middle.y, radius, parallel_rows(view, size))) continue;
+            const vec3 off = (float(x) + 0.5f - middle.x) * texel * frame.across + (float(y) + 0.5f - middle.y) * texel * frame.down;
+            const float depth = splat_parallel_depth(s, view.direction, off);
+            if (depth > 0) map[y * columns + x] = min(map[y * columns + x], floatBitsToUint(depth));
+        }
+}
+
 }  // namespace
 
 std::vector<uint> splat_ref(const compute::BshArrays& tree, std::span<const uvec2> groups, std::span<const View> views, uint first_view, uint maps,
@@ -29,9 +44,13 @@ std::vector<uint> splat_ref(const compute::BshArrays& tree, std::span<const uvec
     for (const uvec2& code : groups) {
         const CutGroup g = cut_unpack(code);
         for (uint slot = 8 * g.block; slot < 8 * g.block + 8; ++slot)
-            if ((g.drawn >> slot % 8 & 1) && opacity_in_view(bsh_missing(tree.boxes[slot]), g.view))
-                draw(splat_of(views[g.view], tree.sphere(slot), tree.cones[slot], tree.boxes[slot]), map_size,
-                     &atlas[size_t(g.view - first_view) * map_texels(map_size)]);
+            if ((g.drawn >> slot % 8 & 1) && opacity_in_view(bsh_missing(tree.boxes[slot]), g.view)) {
+                const View& view = views[g.view];
+                const Splat s = splat_of(view, tree.sphere(slot), tree.cones[slot], tree.boxes[slot]);
+                uint* map = &atlas[size_t(g.view - first_view) * map_texels(map_size)];
+                if (is_parallel(view)) draw_parallel(view, s, map_size, map);
+                else draw(s, map_size, map);
+            }
     }
     return atlas;
 }

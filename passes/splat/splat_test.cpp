@@ -9,6 +9,8 @@
 #include "compute/raytrace/raytrace_io.h"
 #include "compute/views/view_testing.hpp"
 #include "engine/testing.hpp"
+#include "passes/environment/environment.hpp"
+#include "passes/geometry/geometry_ref.hpp"
 #include "passes/geometry/test_scene.hpp"
 #include "passes/kernels.hpp"
 #include "passes/splat/splat_ref.hpp"
@@ -24,6 +26,16 @@ protected:
     float uniform(float lo = -1, float hi = 1) { return std::uniform_real_distribution<float>(lo, hi)(random); }
     vec3 point(float scale = 1) { return scale * vec3(uniform(), uniform(), uniform()); }
     std::vector<View> random_views(size_t n, float scale) { return compute::random_views(random, n, scale, {0.7f, pi / 2, 2.5f, pi}); }
+
+    std::vector<View> parallel_views(const TestScene& scene, size_t n, uint map_size) {
+        std::vector<View> views;
+        while (views.size() < n) {
+            const vec3 d = point();
+            views.push_back(parallel_view(normalize(dot(d, d) > 0.01f && random() % 4 ? d : vec3(views.size() % 2, views.size() % 2 ? 0 : -1, 0)), scene.triangles.lo, scene.triangles.hi, map_size));
+        }
+        return views;
+    }
+    static engine::Constants kind_of(const std::vector<View>& views) { return {{parallel_constant, !views.empty() && is_parallel(views[0])}}; }
 
     // A scene and its tree on the device, and the tree read back.
     struct Tree {
@@ -56,7 +68,7 @@ protected:
         const auto count = on_device(std::vector<uint>{uint(views.size())});
         AppendLists lists(device, AppendMode::scan, 1 << 18, 1 << 18);
         engine::Recorder recorder(device);
-        compute::ManyLods(device).record(recorder, lists, {tree.bsh, on, count, first, uint32_t(views.size()), epsilon, map_size});
+        compute::ManyLods(device, kind_of(views)).record(recorder, lists, {tree.bsh, on, count, first, uint32_t(views.size()), epsilon, map_size});
         recorder.submit_and_wait();
         EXPECT_TRUE(lists.report().ok());
         return engine::download(device, lists.kept(), lists.report().kept);
@@ -79,14 +91,14 @@ protected:
         engine::upload_bytes(device, state.data(), lists.state(), state.size() * sizeof(uint));
         const auto on = on_device(views);
         engine::Array<uint> atlas(device, "test", "atlas", o.maps * map_texels(map_size));
-        SplatPass pass(device);
+        SplatPass pass(device, kind_of(views));
         compute::Grid grid(device);
         engine::Recorder recorder(device);
         if (!o.threads_per_group) {
             pass.record(recorder, {lists, tree.bsh, on, o.first, map_size}, atlas);
         } else {
             recorder.fill(atlas, atlas_nothing);
-            const engine::Program program(device, engine::passes_kernels, "splat/splat", {{2, o.threads_per_group}});
+            const engine::Program program(device, engine::passes_kernels, "splat/splat", {{2, o.threads_per_group}, *kind_of(views).begin()});
             grid.dispatch(recorder, program, lists.state(), AppendLists::kept_word, lists.kept_capacity(), o.threads_per_group, [&] {
                 return SplatPush{recorder.read(lists.kept()), recorder.read(lists.state(), AppendLists::kept_word),
                                  recorder.read(lists.state(), AppendLists::failed_word), tree.bsh.read(recorder),
@@ -151,6 +163,49 @@ TEST_F(SplatTest, trees_of_every_depth) {
         SCOPED_TRACE(depth);
         EXPECT_GT(check(random_tree(depth), random_views(12, 1.5f), 1, 16), 0.02);
     }
+}
+
+TEST_F(SplatTest, parallel_views_of_every_map_size) {
+    for (uint32_t depth : {0u, 3u, 7u, 12u}) {
+        const Tree tree = random_tree(depth);
+        for (uint size : {2u, 16u, 31u}) {
+            SCOPED_TRACE(testing::Message() << depth << ", " << size);
+            EXPECT_GT(check(tree, parallel_views(tree.scene, 12, size), depth == 12 ? 0.5f : 2, size), 0.02);
+        }
+    }
+}
+
+// What is drawn is what lines of sight meet, in doubles, but for texels at edges; and the map is put to use.
+TEST_F(SplatTest, parallel_maps_hold_the_depths_of_surfaces) {
+    TestScene scene;
+    scene.material(vec3(1));
+    scene.quad({-3, 0, -2}, {0, 0, 4}, {6, 0, 0}, 0);
+    scene.quad({-1, 0.5f, -1}, {2, 0.2f, 0}, {0.1f, 1.5f, 0.4f}, 0);
+    scene.quad({0.5f, 1.2f, -1}, {1, 0, 0}, {0, 0.3f, 2}, 0);
+    const Tree tree = grow(scene, 15);
+    const uint size = 32;
+    auto views = parallel_views(scene, 24, size);
+    const auto atlas = splat(tree, cut(tree, views, 1, size), views, size, {});
+    size_t right = 0, hits = 0, all = 0, hidden = 0;
+    for (size_t v = 0; v < views.size(); ++v) {
+        const View& view = views[v];
+        if (std::abs(view.direction.y) < 0.1f) continue;  // the ground is seen edge-on
+        const ParallelFrame f = parallel_frame(view.direction);
+        const double texel = parallel_texel(view, size);
+        const glm::dvec3 n(view.direction);
+        for (uint y = 0; y < parallel_rows(view, size); ++y)
+            for (uint x = 0; x < parallel_columns(view); ++x) {
+                const glm::dvec3 from = glm::dvec3(view.position) + glm::dvec3(f.across) * ((x + 0.5) * texel) + glm::dvec3(f.down) * ((y + 0.5) * texel);
+                const double exact = closest_ref(scene.triangles, from, n, 0, 1e30).t;
+                const float drawn = uintBitsToFloat(atlas[v * map_texels(size) + y * parallel_columns(view) + x]);
+                const bool hit = exact < 1e29;
+                right += hit ? std::abs(drawn - exact) < 0.02 : !(drawn < 1e29f);
+                hits += hit, ++all, hidden += hit && drawn < exact - 0.02;
+            }
+    }
+    EXPECT_GT(right, 0.95 * double(all)) << right << " of " << all;
+    EXPECT_LT(hidden, 0.02 * double(hits));
+    EXPECT_GT(hits, 0.35 * double(all)) << "of the texels that there are";
 }
 
 // Views at and around the middles of leaves, on the nodes' planes, and where nodes lie along the axis and across the equator.

@@ -17,6 +17,19 @@ struct Vpl {
 };
 MYRIAD_ARRAY(Vpls, Vpl, 16)
 
+// A light that is infinitely far is kept as a VPL as well, for kernels that are told that theirs are (parallel_constant): a part of an
+// environment of this solid angle around this direction. Its flux is pi times its irradiance, and falls on what faces it.
+MYRIAD_FN Vpl far_light(vec3 to_light, vec3 irradiance, float solid_angle) {
+    Vpl light;
+    light.position = to_light;   // unit
+    light.normal = floatBitsToUint(solid_angle);
+    light.flux = pi * irradiance;
+    light.bounce = 0u;
+    return light;
+}
+MYRIAD_FN vec3 far_direction(Vpl light) { return light.position; }
+MYRIAD_FN float far_solid_angle(Vpl light) { return uintBitsToFloat(light.normal); }
+
 const uint vpl_max_bounces = 64u;
 
 // What all path kernels need. Slot `layer * paths + path` is for the VPL that a path leaves at its `layer`-th vertex.
