@@ -109,9 +109,9 @@ void Frame::make_lighting(const scenes::Scene& scene, compute::Derived& derived,
 }
 
 Gathering Frame::make_gathering(uint32_t lights, bool far, const compute::WorldTriangles& world, const IsmScene& points) {
-    const GatheringSettings settings{.visibility = gather_visibility(settings_.visibility), .width = settings_.width, .height = settings_.height, .lights = lights,
-                                     .subset = settings_.subset, .filter = settings_.filter, .glossy = size_.glossy, .far = far, .bias = settings_.bias,
-                                     .maps = map_settings(settings_)};
+    const GatheringSettings settings{.visibility = gather_visibility(settings_.visibility), .width = settings_.width, .height = settings_.height,
+                                     .lights = lights, .subset = settings_.subset, .filter = settings_.filter, .glossy = size_.glossy, .far = far,
+                                     .bias = settings_.bias, .maps = map_settings(settings_)};
     return Gathering(device_, settings, bvh_.constants(), &world, &points);
 }
 
@@ -243,9 +243,10 @@ void Frame::read_back_words() {
 }
 
 // The many views: their maps, batch by batch, and what their lights bring to each pixel.
-void Frame::gather(Gathering& gathering, const engine::Array<Vpl>& lights, const engine::Array<View>& views, const engine::Array<uint>& count, float pixel_angle,
-                   const char* stage) {
-    const GatheringInputs in{.gbuffer = gbuffer(), .lights = lights, .views = views, .count = count, .bound = vpl_bound_, .scene = map_scene(), .bvh = bvh_, .reach = reach_};
+void Frame::gather(Gathering& gathering, const engine::Array<Vpl>& lights, const engine::Array<View>& views, const engine::Array<uint>& count,
+                   float pixel_angle, const char* stage) {
+    const GatheringInputs in{.gbuffer = gbuffer(), .lights = lights, .views = views, .count = count, .bound = vpl_bound_, .scene = map_scene(),
+                             .bvh = bvh_, .reach = reach_};
     gathering.record(recorder_, in, pixel_angle, exhausted_, [&](double done) { report(stage, done); });
 }
 

@@ -49,10 +49,13 @@ Loaded load(const RenderOptions& options, Progress& progress) {
     if (loaded.path)
         for (const Shot& shot : shots(options)) loaded.path->at(*shot.seconds);  // refused now, not after an hour
     loaded.scene = scenes::load(options.scene);
-    if (const auto& e = options.environment; !e.file.empty())
-        scenes::apply_environment(loaded.scene, read_environment(e.file, e.strength.value_or(1), glm::radians(double(e.rotation.value_or(0))), loaded.scene.warnings),
+    if (const auto& e = options.environment; !e.file.empty()) {
+        const double rotation = glm::radians(double(e.rotation.value_or(0)));
+        scenes::apply_environment(loaded.scene, read_environment(e.file, e.strength.value_or(1), rotation, loaded.scene.warnings),
                                   e.lights.value_or(scenes::default_environment_lights), options.frame.seed);
-    else scenes::apply_sky(loaded.scene, options.sky);
+    } else {
+        scenes::apply_sky(loaded.scene, options.sky);
+    }
     scenes::Playback playback{.loop = options.loop};
     if (!options.animation.empty()) playback = scenes::pick_clips(loaded.scene, options.animation, options.loop);
     else if (options.moves() && !loaded.scene.clips.empty()) playback.clips = {0};

@@ -47,12 +47,14 @@ void add_outputs(CLI::App& command, RenderOptions& o) {
 void add_environment(CLI::App& command, RenderOptions::Environment& e) {
     command.add_option("--env", e.file, "an environment that surrounds and lights the scene: an equirectangular picture of radiance, .exr or .hdr;\n"
                        "its middle lies along +x, what is right of it towards +z")->type_name("FILE");
-    add_parsed(command, "--env-lights", "N", std::to_string(scenes::default_environment_lights), "directional lights that stand for it, each with its map; more of them where it is brighter",
+    add_parsed(command, "--env-lights", "N", std::to_string(scenes::default_environment_lights), "directional lights that stand for it,\neach with its map; more of them where it is brighter",
                [&e](const std::string& text) { e.lights = uint32_t(parse_whole("--env-lights", text, 1, scenes::most_environment_lights)); });
     add_parsed(command, "--env-rotation", "DEGREES", "0", "turns it about +y, anticlockwise seen from above", [&e](const std::string& text) {
         e.rotation = parse_number("--env-rotation", text, -36000, 36000);
     });
-    add_parsed(command, "--env-strength", "F", "1", "factor on its radiance", [&e](const std::string& text) { e.strength = parse_number("--env-strength", text, 1e-9f, 1e9f); });
+    add_parsed(command, "--env-strength", "F", "1", "factor on its radiance", [&e](const std::string& text) {
+        e.strength = parse_number("--env-strength", text, 1e-9f, 1e9f);
+    });
 }
 
 void add_technique(CLI::App& command, passes::FrameSettings& s) {
@@ -196,11 +198,13 @@ void check_outputs(const RenderOptions& o) {
     if (!o.camera_path.empty() && !o.time && !o.frames) throw InputError("--camera-path is a way in time; say which moment with --time, or which with --frames");
     const RenderOptions::Environment& e = o.environment;
     if (e.file.empty())
-        for (const auto& [given, name] : {std::pair(e.lights.has_value(), "--env-lights"), {e.rotation.has_value(), "--env-rotation"}, {e.strength.has_value(), "--env-strength"}})
+        for (const auto& [given, name] : {std::pair(e.lights.has_value(), "--env-lights"), {e.rotation.has_value(), "--env-rotation"},
+                                          {e.strength.has_value(), "--env-strength"}})
             if (given) throw InputError(std::string(name) + " is about an environment, and there is none; name one with --env FILE");
     if (!e.file.empty() && o.sky == scenes::SkyChoice::on) throw InputError("--sky on and --env both say what surrounds the scene; give one of them");
     if (!e.file.empty() && (o.frame.visibility == passes::Visibility::brute || o.frame.visibility == passes::Visibility::ism))
-        throw InputError("--visibility " + choice_name(visibilities(), o.frame.visibility) + " draws no maps for the lights of an environment; give manylods, rays or none with --env");
+        throw InputError("--visibility " + choice_name(visibilities(), o.frame.visibility) +
+                         " draws no maps for the lights of an environment; give manylods, rays or none with --env");
     std::optional<uint32_t> first;
     if (o.frames) first = o.frames->first;
     std::set<std::filesystem::path> seen;

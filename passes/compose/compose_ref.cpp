@@ -6,7 +6,8 @@ namespace myriad::passes {
 
 using glm::dvec3;
 
-std::vector<ComposedRef> compose_ref(const HostGBuffer& gbuffer, const std::vector<vec4>* irradiance, const std::vector<vec4>* natural, const std::vector<vec4>* direct) {
+std::vector<ComposedRef> compose_ref(const HostGBuffer& gbuffer, const std::vector<vec4>* irradiance, const std::vector<vec4>* natural,
+                                     const std::vector<vec4>* direct) {
     std::vector<ComposedRef> out;
     for (size_t i = 0; i < gbuffer.pixels(); ++i) {
         dvec3 indirect(0);

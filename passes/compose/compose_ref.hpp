@@ -6,5 +6,6 @@ struct ComposedRef {
     glm::dvec3 indirect, beauty;
 };
 // Null: there is no such light.
-std::vector<ComposedRef> compose_ref(const HostGBuffer& gbuffer, const std::vector<vec4>* irradiance, const std::vector<vec4>* natural, const std::vector<vec4>* direct);
+std::vector<ComposedRef> compose_ref(const HostGBuffer& gbuffer, const std::vector<vec4>* irradiance, const std::vector<vec4>* natural,
+                                     const std::vector<vec4>* direct);
 }  // namespace myriad::passes

@@ -22,7 +22,8 @@ struct Interval {
 // The bounds' shadow along an axis.
 Interval shadow(const dvec3& axis, const dvec3& lo, const dvec3& hi) {
     Interval interval;
-    for (int corner = 0; corner < 8; ++corner) interval.hold(glm::dot(axis, dvec3(corner & 1 ? hi.x : lo.x, corner & 2 ? hi.y : lo.y, corner & 4 ? hi.z : lo.z)));
+    for (int corner = 0; corner < 8; ++corner)
+        interval.hold(glm::dot(axis, dvec3(corner & 1 ? hi.x : lo.x, corner & 2 ? hi.y : lo.y, corner & 4 ? hi.z : lo.z)));
     return interval;
 }
 
@@ -34,7 +35,8 @@ View parallel_view(const vec3& direction, const vec3& lo, const vec3& hi, uint m
     Interval u = shadow(across, lo, hi), v = shadow(down, lo, hi), depth = shadow(along, lo, hi);
     // What floats round off, here and in kernels. And what is seen edge-on gets some width: else texels would be far finer across it than the
     // samples, and all cuts would go down to the leaves.
-    const double far = std::max({glm::length(dvec3(lo)), glm::length(dvec3(hi)), 1e-30}), size = std::max({u.length(), v.length(), depth.length(), 1e-6 * far});
+    const double far = std::max({glm::length(dvec3(lo)), glm::length(dvec3(hi)), 1e-30});
+    const double size = std::max({u.length(), v.length(), depth.length(), 1e-6 * far});
     const double margin = 1e-4 * size + 1e-6 * far;
     for (Interval* i : {&u, &v}) {
         const double missing = 0.5 * std::max(0.0, size / 8 - i->length());
