@@ -93,7 +93,7 @@ void Frame::make_lighting(const scenes::Scene& scene, compute::Derived& derived,
     }
     if (!vpl_ && far_lights == 0) return;
     if (settings.visibility == Visibility::manylods) {
-        tree_.emplace(step("sampling the surface", [&] { return derived.bsh(device_, settings.log2_samples, settings.seed); }));
+        tree_.emplace(step("sampling the surface", [&] { return derived.bsh(device_, settings.log2_samples, settings.seed, settings.maps.arity); }));
         size_.samples = tree_->leaves();
         size_.bsh_blocks = tree_->blocks();
     }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <map>
+#include <numeric>
 #include <sstream>
 #include <thread>
 
@@ -144,6 +145,29 @@ TEST_F(command_line, environments) {
         if (first.empty()) first = blue;
         else EXPECT_EQ(blue == first, more == Arguments({"--update", "incremental"}));
     }
+}
+
+// Trees of every arity draw about the same image, and carried cuts through them the very same.
+TEST_F(command_line, arities) {
+    refuse(2, {"render", "none.glb", "-o", exr, "--arity", "3"}, "--arity '3'");
+    refuse(2, {"render", "builtin:cornell", "--size", "8x8", "-o", exr, "--arity", "2", "--samples", "28"}, "give --samples 25 at most");
+    const TempFolder other;
+    const std::string stats = other / "s.json", image = other / "a.exr";
+    std::vector<std::vector<float>> images;
+    std::vector<uint64_t> blocks;
+    for (const char* arity : {"2", "4", "8"})
+        for (const char* update : {"basic", "incremental"}) {
+            succeed({"render", "builtin:cornell", "--size", "64x48", "--samples", "13", "--vpls", "64", "-q", "-o", image, "--stats", stats, "--float", "--arity", arity,
+                     "--update", update});
+            const nlohmann::json json = nlohmann::json::parse(bytes_of(stats));
+            EXPECT_EQ(json["settings"]["arity"], std::stoi(arity));
+            images.push_back(read_exr(image).find("R")->values);
+            blocks.push_back(json["scene"]["bsh_blocks"]);
+        }
+    EXPECT_EQ(blocks, (std::vector<uint64_t>{8191, 8191, 2731, 2731, 1171, 1171}));
+    for (size_t i = 0; i < images.size(); i += 2) EXPECT_TRUE(images[i] == images[i + 1]) << i;
+    const auto mean = [](const std::vector<float>& values) { return std::accumulate(values.begin(), values.end(), 0.0) / double(values.size()); };
+    for (const auto& other_arity : {images[0], images[2]}) EXPECT_NEAR(mean(other_arity) / mean(images[4]), 1, 0.03);
 }
 
 TEST_F(command_line, outputs_that_cannot_be_written_are_told_at_once) {
@@ -420,6 +444,21 @@ TEST_F(command_line, bench_figure_8) {
     EXPECT_EQ(std::ranges::count(table, '\n'), 4) << table;
     EXPECT_EQ(std::ranges::count(table, ','), 4 * 12) << table;
     EXPECT_TRUE(contains(bytes_of(folder / "f.svg"), ">lazy</text>"));
+}
+
+// For each arity what its tree takes, and its cuts.
+TEST_F(command_line, bench_arity) {
+    refuse(2, {"bench", "manylods-arity", "--arity", "4"}, "--arity is an option of bench manylods");
+    succeed({"bench", "manylods-arity", "--scene", "builtin:cornell?light=point", "--views", "4", "--samples", "7", "--map-size", "4", "--repeat", "2",
+             "--json", folder / "rows.json"});
+    std::map<std::string, std::vector<int>> arities;
+    for (const auto& row : rows_of(folder / "rows.json")) {
+        arities[row["technique"]].push_back(row["settings"]["arity"]);
+        EXPECT_EQ(row["ms"]["n"], 2) << row;
+        EXPECT_TRUE(row["technique"] == "refit" ? row["bytes"]["bsh"] > 0 : row["counters"]["node_views"] > 0) << row;
+    }
+    const std::vector<int> all = {2, 4, 8};
+    EXPECT_EQ(arities, (std::map<std::string, std::vector<int>>{{"basic", all}, {"incremental", all}, {"refit", all}}));
 }
 
 // Maps in the same time, diffuse and glossy; ISM has as few points as there are.

@@ -76,6 +76,7 @@ void add_technique(CLI::App& command, passes::FrameSettings& s) {
         parse_update("--update", text, s.maps);
     });
     add_whole(command, "--samples", s.log2_samples, 0, 28, "2^N points on the surface, the leaves of the tree that is cut");
+    add_choice(command, "--arity", s.maps.arity, arities(), "children of a node of that tree");
     add_choice(command, "--append", s.maps.append, append_modes(), "how lists are appended to; images are the same");
     add_whole(command, "--seed", s.seed, 0, ~0u, "of the VPLs and the points; the scene does not depend on it");
 }
@@ -131,6 +132,11 @@ void parse_update(const std::string& option, const std::string& text, passes::Ma
     else if (text != "basic" && text != "incremental" && text != "lazy")
         throw InputError(option + " '" + text + "': give basic, incremental, lazy, or lazy:q with a whole number q from 1 on");
     maps.update = text == "basic" ? CutUpdate::basic : text == "incremental" ? CutUpdate::incremental : CutUpdate::lazy;
+}
+
+const Choices<uint32_t>& arities() {
+    static const Choices<uint32_t> choices = {{"2", 2}, {"4", 4}, {"8", 8}};
+    return choices;
 }
 
 const Choices<scenes::SkyChoice>& sky_choices() {

@@ -45,6 +45,7 @@ struct RenderOptions {
 const Choices<passes::Visibility>& visibilities();
 const Choices<passes::Brdf>& brdfs();
 const Choices<compute::AppendMode>& append_modes();
+const Choices<uint32_t>& arities();
 // --update: basic, incremental, lazy or lazy:q.
 std::string show_update(const passes::MapSettings& maps);
 void parse_update(const std::string& option, const std::string& text, passes::MapSettings& maps);

@@ -141,6 +141,7 @@ ordered_json settings_json(const passes::FrameSettings& s, float vpl_bound, bool
     json["update"] = show_update(s.maps);
     json["epsilon"] = shortest(s.maps.epsilon);
     json["log2_samples"] = s.log2_samples;
+    json["arity"] = s.maps.arity;
     return json;
 }
 

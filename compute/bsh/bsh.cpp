@@ -6,6 +6,7 @@
 #include "compute/bsh/bsh_order.hpp"
 #include "compute/kernels.hpp"
 #include "compute/surface_sampling/surface_sampling.hpp"
+#include "engine/error.hpp"
 #include "engine/parallel.hpp"
 #include "engine/transfer.hpp"
 
@@ -15,8 +16,9 @@ using engine::compute_kernels;
 
 namespace {
 
-engine::Constants leaf_constants(const WorldTriangles& world) {
+engine::Constants leaf_constants(const WorldTriangles& world, uint arity) {
     engine::Constants constants = world.constants();
+    constants.merge(bsh_constants(arity));
     constants[2] = world.opacity.blends();
     return constants;
 }
@@ -25,7 +27,7 @@ engine::Constants leaf_constants(const WorldTriangles& world) {
 struct MovingBlocks {
     std::vector<uint> blocks, ends;
 };
-MovingBlocks moving_blocks_of(std::span<const uint8_t> leaf_moves, std::span<const BshLevel> levels) {
+MovingBlocks moving_blocks_of(std::span<const uint8_t> leaf_moves, std::span<const BshLevel> levels, uint arity) {
     MovingBlocks found;
     for (uint level = 0; level < levels.size(); ++level) {
         const size_t first = found.blocks.size(), below = level > 1 ? found.ends[level - 2] : 0;
@@ -34,9 +36,9 @@ MovingBlocks moving_blocks_of(std::span<const uint8_t> leaf_moves, std::span<con
         };
         if (level == 0) {
             for (uint leaf = 0; leaf < leaf_moves.size(); ++leaf)
-                if (leaf_moves[leaf]) add(leaf / 8);
+                if (leaf_moves[leaf]) add(leaf / arity);
         } else {
-            for (size_t i = below; i < first; ++i) add(found.blocks[i] / 8);
+            for (size_t i = below; i < first; ++i) add(found.blocks[i] / arity);
         }
         found.ends.push_back(uint(found.blocks.size()));
     }
@@ -45,13 +47,36 @@ MovingBlocks moving_blocks_of(std::span<const uint8_t> leaf_moves, std::span<con
 
 }  // namespace
 
-std::vector<BshLevel> bsh_levels(uint leaves) {
-    std::vector<BshLevel> levels{{leaves, 0}};
+engine::Constants bsh_constants(uint arity) {
+    assert((arity == 2 || arity == 4 || arity == 8) && "masks have eight bits");
+    return {{bsh_arity_constant, uint(std::countr_zero(arity))}};
+}
+
+uint bsh_arity_of(const engine::Constants& constants) {
+    const auto found = constants.find(bsh_arity_constant);
+    return found == constants.end() ? bsh_arity_default : 1u << found->second;
+}
+
+std::vector<BshLevel> bsh_levels(uint leaves, uint arity) {
+    const uint arity_log2 = uint(std::countr_zero(arity));
+    std::vector<BshLevel> levels{{leaves, 0, arity_log2}};
     do {
         const BshLevel below = levels.back();
-        levels.push_back({below.blocks(), below.first_slot + 8 * below.blocks()});
+        levels.push_back({below.blocks(), below.first_slot + arity * below.blocks(), arity_log2});
     } while (levels.back().nodes > 1);
     return levels;
+}
+
+void check_bsh_size(uint32_t log2_samples, uint arity) {
+    assert(log2_samples <= 28 && "slots are 32-bit");
+    const auto blocks = [&](uint32_t samples) { return bsh_levels(1u << samples, arity).back().first_block(); };
+    const uint most_blocks = bsh_max_blocks - 2;  // with the one over the root
+    if (blocks(log2_samples) <= most_blocks) return;
+    uint32_t most = log2_samples;
+    while (blocks(most) > most_blocks) --most;
+    throw InputError("--samples " + std::to_string(log2_samples) + " with --arity " + std::to_string(arity) + " makes a tree of " +
+                     std::to_string(blocks(log2_samples)) + " blocks, more than the cuts' " + std::to_string(most_blocks) +
+                     "; give --samples " + std::to_string(most) + " at most, or --arity 8");
 }
 
 BshLeaves bsh_leaves(const WorldTriangles& world, uint32_t log2_samples, uint32_t seed) {
@@ -74,17 +99,19 @@ BshLeaves bsh_leaves(const WorldTriangles& world, uint32_t log2_samples, uint32_
     return {std::move(leaves), sampling.area, sampling.radius};
 }
 
-Bsh::Bsh(engine::Device& device, const WorldTriangles& world, std::span<const SurfaceSample> leaves, double area, float radius)
-    : device_(device), leaves_(device, compute_kernels, "bsh/leaves", leaf_constants(world)), inner_(device, compute_kernels, "bsh/inner"),
-      quality_(device, compute_kernels, "bsh/quality"),
+Bsh::Bsh(engine::Device& device, const WorldTriangles& world, std::span<const SurfaceSample> leaves, double area, float radius, uint arity)
+    : device_(device), arity_log2_(uint(std::countr_zero(arity))),
+      leaves_(device, compute_kernels, "bsh/leaves", leaf_constants(world, arity)),
+      inner_(device, compute_kernels, "bsh/inner", bsh_constants(arity)), quality_(device, compute_kernels, "bsh/quality", bsh_constants(arity)),
       shared_(world.shared()), blends_(world.opacity.blends()) {
     if (leaves.empty()) return;
     assert(std::has_single_bit(leaves.size()) && leaves.size() <= uint64_t(1) << 28 && "slots are 32-bit");
     depth_ = uint(std::countr_zero(leaves.size()));
+    check_bsh_size(depth_, arity);
     sample_radius_ = radius;
     area_ = area;
 
-    levels_ = bsh_levels(uint(leaves.size()));
+    levels_ = bsh_levels(uint(leaves.size()), arity);
     samples_ = engine::upload(device, "scene", "samples", leaves);
     frames_ = {device, "scene", "BSH frames", blocks() + 1};
     merged_ = {device, "scene", "BSH merged spheres", blocks()};
@@ -98,7 +125,7 @@ Bsh::Bsh(engine::Device& device, const WorldTriangles& world, std::span<const Su
 }
 
 void Bsh::find_moving() {
-    const MovingBlocks moving = moving_blocks_of(leaf_moves_, levels_);
+    const MovingBlocks moving = moving_blocks_of(leaf_moves_, levels_, arity());
     moving_ = {};
     moving_ = engine::upload(device_, "scene", "BSH blocks that move", moving.blocks);
     moving_ends_ = moving.ends;
@@ -170,11 +197,11 @@ BshQuality Bsh::quality() const {
 void Bsh::rebuild(engine::Recorder& recorder, const engine::Array<vec3>& positions, const engine::Array<uvec4>& triangles,
                   const engine::Array<Instance>* instances, const OpacityReader& opacity) {
     recorder.submit_and_wait();
-    const std::vector<vec4> frames = engine::download(device_, frames_, leaves() / 8 + 1);
+    const std::vector<vec4> frames = engine::download(device_, frames_, leaves() / arity() + 1);
     const std::vector<uvec2> spheres = engine::download(device_, spheres_, leaves());
     const std::vector<SurfaceSample> samples = engine::download(device_, samples_);
     std::vector<vec3> points;
-    for (uint leaf = 0; leaf < leaves(); ++leaf) points.push_back(bsh_decode(frames[leaf / 8], spheres[leaf]).center);
+    for (uint leaf = 0; leaf < leaves(); ++leaf) points.push_back(bsh_decode(frames[leaf / arity()], spheres[leaf]).center);
     const std::vector<uint32_t> order = bsh_order(points);
     std::vector<SurfaceSample> sorted;
     std::vector<uint8_t> moves;

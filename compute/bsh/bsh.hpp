@@ -11,13 +11,23 @@
 
 namespace myriad::compute {
 
-// The levels of the 8-ary tree from the leaves to the root, which is a level of its own.
+// How many children a node has, unless the scene says otherwise: README.md has why. 2, 4 or 8.
+constexpr uint bsh_arity_default = 8;
+
+// What kernels that walk trees of this arity are specialised by, and back.
+engine::Constants bsh_constants(uint arity);
+uint bsh_arity_of(const engine::Constants& constants);
+
+// The levels of the tree from the leaves to the root, which is a level of its own.
 struct BshLevel {
-    uint nodes, first_slot;
-    uint blocks() const { return (nodes + 7) / 8; }
-    uint first_block() const { return first_slot / 8; }
+    uint nodes, first_slot, arity_log2;
+    uint blocks() const { return (nodes + (1u << arity_log2) - 1) >> arity_log2; }
+    uint first_block() const { return first_slot >> arity_log2; }
 };
-std::vector<BshLevel> bsh_levels(uint leaves);
+std::vector<BshLevel> bsh_levels(uint leaves, uint arity);
+
+// Throws InputError where a tree of 2^log2_samples leaves has more blocks than cuts can name.
+void check_bsh_size(uint32_t log2_samples, uint arity);
 
 // What the host finds of a hierarchy: the samples, in the order of leaves. 2^d of them, or none where no triangle is finite.
 struct BshLeaves {
@@ -37,11 +47,13 @@ struct BshQuality {
 class Bsh {
 public:
     // Bounds come with refit. Without samples the hierarchy is empty(): it has no leaves and must not be read.
-    Bsh(engine::Device& device, const WorldTriangles& world, std::span<const SurfaceSample> samples, double area, float radius);
-    Bsh(engine::Device& device, const WorldTriangles& world, const BshLeaves& leaves)
-        : Bsh(device, world, leaves.samples, leaves.area, leaves.radius) {}
-    Bsh(engine::Device& device, const WorldTriangles& world, uint32_t log2_samples, uint32_t seed)
-        : Bsh(device, world, bsh_leaves(world, log2_samples, seed)) {}
+    // Throws InputError as check_bsh_size.
+    Bsh(engine::Device& device, const WorldTriangles& world, std::span<const SurfaceSample> samples, double area, float radius,
+        uint arity = bsh_arity_default);
+    Bsh(engine::Device& device, const WorldTriangles& world, const BshLeaves& leaves, uint arity = bsh_arity_default)
+        : Bsh(device, world, leaves.samples, leaves.area, leaves.radius, arity) {}
+    Bsh(engine::Device& device, const WorldTriangles& world, uint32_t log2_samples, uint32_t seed, uint arity = bsh_arity_default)
+        : Bsh(device, world, bsh_leaves(world, log2_samples, seed), arity) {}
 
     // Computes all bounds for these positions: a dispatch a level, nothing read back. Triangles and instances are those sampled;
     // `instances` may be null where triangles are not shared, `opacity` where nothing blends.
@@ -73,8 +85,10 @@ public:
     bool empty() const { return levels_.empty(); }
     uint leaves() const { return empty() ? 0 : levels_.front().nodes; }
     uint blocks() const { return empty() ? 0 : levels_.back().first_block(); }  // without the one over the root
-    uint slots() const { return empty() ? 0 : 8 * (blocks() + 1); }
-    uint root() const { return 8 * blocks(); }                                   // its slot
+    uint slots() const { return empty() ? 0 : arity() * (blocks() + 1); }
+    uint root() const { return shape().root(); }                                // its slot
+    uint arity() const { return 1u << arity_log2_; }
+    BshShape shape() const { return {leaves(), blocks(), arity_log2_}; }
     uint depth() const { return depth_; }                                       // of the binary tree: leaves = 2^depth
     uint levels() const { return empty() ? 0 : uint(levels_.size()) - 1; }      // opening steps from the root to the leaves
     float sample_radius() const { return sample_radius_; }
@@ -96,6 +110,7 @@ private:
     void find_moving();
 
     engine::Device& device_;
+    uint arity_log2_;
     engine::Program leaves_, inner_, quality_;
     uint rebuilds_ = 0;
     uint depth_ = 0;

@@ -18,11 +18,17 @@ const float bsh_slack = 1.0f + 1.0f / 65536.0f;
 // Moves of the centre in bsh_merge; README.md has what fewer and more of them give.
 const uint bsh_merge_moves = 8u;
 
-struct BshSpheres { Sphere at[8]; };
-struct BshCones { uint at[8]; };
+// A block's children. Of one that has fewer, the last is repeated, which changes no bound; kernels look at no more than the arity.
+#ifdef __cplusplus
+const uint bsh_looked_at = bsh_most;
+#else
+const uint bsh_looked_at = bsh_arity;
+#endif
+struct BshSpheres { Sphere at[bsh_most]; };
+struct BshCones { uint at[bsh_most]; };
 struct BshBoxes {
-    BshBox at[8];     // in world space
-    uint missing[8];  // of each, as bsh_missing
+    BshBox at[bsh_most];     // in world space
+    uint missing[bsh_most];  // of each, as bsh_missing
 };
 
 // "bsh/leaves" and "bsh/inner": one invocation a block of the level whose nodes are slots [first_slot, first_slot + nodes), or one a
@@ -74,7 +80,7 @@ MYRIAD_FN float bsh_reach(vec3 c, Sphere s) {
 MYRIAD_FN vec4 bsh_frame(BshSpheres children) {
     vec3 low = children.at[0].center;
     vec3 high = low;
-    for (uint i = 1u; i < 8u; ++i) {
+    for (uint i = 1u; i < bsh_looked_at; ++i) {
         low = min(low, children.at[i].center);
         high = max(high, children.at[i].center);
     }
@@ -93,12 +99,12 @@ MYRIAD_FN uvec2 bsh_encode(vec4 frame, Sphere s) {
     return uvec2(x | (y << 16), z | (bsh_radius_code(bsh_reach(decoded.center, s)) << 16));
 }
 
-// A small sphere around eight: from the centre of their box, a few moves towards the farthest (Badoiu and Clarkson 2003),
+// A small sphere around them: from the centre of their box, a few moves towards the farthest (Badoiu and Clarkson 2003),
 // and the best centre seen.
 MYRIAD_FN Sphere bsh_merge(BshSpheres children) {
     vec3 low = children.at[0].center - children.at[0].radius;
     vec3 high = children.at[0].center + children.at[0].radius;
-    for (uint i = 1u; i < 8u; ++i) {
+    for (uint i = 1u; i < bsh_looked_at; ++i) {
         low = min(low, children.at[i].center - children.at[i].radius);
         high = max(high, children.at[i].center + children.at[i].radius);
     }
@@ -108,7 +114,7 @@ MYRIAD_FN Sphere bsh_merge(BshSpheres children) {
     for (uint move = 0u; move <= bsh_merge_moves; ++move) {
         float radius = 0.0f;
         vec3 farthest = center;
-        for (uint i = 0u; i < 8u; ++i) {
+        for (uint i = 0u; i < bsh_looked_at; ++i) {
             const float reach = bsh_reach(center, children.at[i]);
             if (reach > radius) {
                 radius = reach;
@@ -161,7 +167,7 @@ MYRIAD_FN uvec2 bsh_encode_box(Sphere s, BshBox box, uint missing) {
 }
 MYRIAD_FN BshBox bsh_merge_boxes(BshBoxes children) {
     BshBox box = children.at[0];
-    for (uint i = 1u; i < 8u; ++i) {
+    for (uint i = 1u; i < bsh_looked_at; ++i) {
         box.low = min(box.low, children.at[i].low);
         box.high = max(box.high, children.at[i].high);
     }
@@ -173,7 +179,7 @@ MYRIAD_FN vec3 bsh_position(vec3 a, vec3 b, vec3 c, float u, float v) { return (
 
 MYRIAD_FN uint bsh_merge_missing(BshBoxes children) {
     uint least = children.missing[0];
-    for (uint i = 1u; i < 8u; ++i) least = min(least, children.missing[i]);
+    for (uint i = 1u; i < bsh_looked_at; ++i) least = min(least, children.missing[i]);
     return least;
 }
 
@@ -206,12 +212,12 @@ MYRIAD_FN uint bsh_cone_of(vec3 e, vec3 f) {
     return sine < 1.0f ? bsh_cone_code(axis, sqrt(1.0f - sine * sine)) : bsh_cone_all;
 }
 
-// The cone around eight. Each axis is flipped into the hemisphere of the first; the owner's is between their extremes.
+// The cone around them. Each axis is flipped into the hemisphere of the first; the owner's is between their extremes.
 MYRIAD_FN uint bsh_cone_merge(BshCones children) {
     const vec3 first = bsh_cone_axis(children.at[0]);
     vec3 low = first;
     vec3 high = first;
-    for (uint i = 1u; i < 8u; ++i) {
+    for (uint i = 1u; i < bsh_looked_at; ++i) {
         vec3 a = bsh_cone_axis(children.at[i]);
         if (a.x * first.x + a.y * first.y + a.z * first.z < 0.0f) a = -a;
         low = min(low, a);
@@ -223,7 +229,7 @@ MYRIAD_FN uint bsh_cone_merge(BshCones children) {
     const vec3 to = bsh_cone_axis(axis);
     float least_cos = 1.0f;
     uint least_code = 0u;
-    for (uint i = 0u; i < 8u; ++i) {
+    for (uint i = 0u; i < bsh_looked_at; ++i) {
         const uint cone = children.at[i];
         // A cone around the very axis adds its angle as it is: flat surfaces stay as flat as their triangles.
         if ((cone & 0xffffffu) == axis) {

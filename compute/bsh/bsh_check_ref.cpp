@@ -79,8 +79,8 @@ struct Walk {
                                  input.leaf_radius, input.leaf_share);
         }
         BshBox box{vec3(HUGE_VALF), vec3(-HUGE_VALF)};
-        const uint block = bsh_block_of(slot, tree.leaves, tree.blocks);
-        for (uint child = 8 * block; child < 8 * block + 8; ++child) {
+        const uint block = bsh_block_of(slot, tree);
+        for (uint child = tree.arity() * block; child < tree.arity() * (block + 1); ++child) {
             if (bsh_is_absent(tree.spheres[child])) continue;
             const BshBox part = reach(child);
             box.low = glm::min(box.low, part.low);
@@ -99,10 +99,10 @@ struct Walk {
         if (!contains(sphere, bsh_decode_box(tree.boxes[slot], sphere.radius), reach(slot)))
             return fail(slot, "the box does not contain the patches below");
         if (bsh_is_leaf(slot, tree.leaves)) return leaf(slot);
-        const uint block = bsh_block_of(slot, tree.leaves, tree.blocks);
+        const uint block = bsh_block_of(slot, tree);
         if (block >= tree.blocks) return fail(slot, "owns a block outside the tree");
         uint children = 0, missing = opacity_nothing;
-        for (uint child = 8 * block; child < 8 * block + 8; ++child) {
+        for (uint child = tree.arity() * block; child < tree.arity() * (block + 1); ++child) {
             if (bsh_is_absent(tree.spheres[child])) continue;
             ++children;
             missing = std::min(missing, bsh_missing(tree.boxes[child]));
@@ -112,7 +112,7 @@ struct Walk {
                 return fail(child, "the parent's cone does not contain the child's");
         }
         if (missing != bsh_missing(tree.boxes[slot])) return fail(slot, "is not as whole as the most whole child");
-        if (children != 8 && slot != tree.root()) return fail(slot, "has fewer than eight children");
+        if (children != tree.arity() && slot != tree.root()) return fail(slot, "has fewer children than the arity");
         return children > 0 || fail(slot, "has no children");
     }
 };
@@ -120,9 +120,9 @@ struct Walk {
 }  // namespace
 
 std::string bsh_check(const BshArrays& tree, const BshInput& input) {
-    const size_t slots = 8 * (size_t(tree.blocks) + 1);
+    const size_t slots = tree.arity() * (size_t(tree.blocks) + 1);
     if (tree.leaves != input.samples.size()) return "as many leaves as samples expected";
-    if (tree.frames.size() != slots / 8 || tree.spheres.size() != slots || tree.cones.size() != slots || tree.boxes.size() != slots)
+    if (tree.frames.size() != slots / tree.arity() || tree.spheres.size() != slots || tree.cones.size() != slots || tree.boxes.size() != slots)
         return "array sizes do not fit the block count";
     Walk walk{tree, input, std::vector<bool>(slots), {}};
     walk.node(tree.root());

@@ -1,14 +1,14 @@
 // The bounding-sphere hierarchy as kernels see it.
 //
-// The paper's tree is a complete binary tree over n = 2^d samples (ManyLoDs 4.1). It is stored with three of its levels
-// taken at once, as an 8-ary tree: opening a node reads one block, which holds the bounds of its eight children in
-// 16 + 8 * 8 bytes (the price is words touched per lane; ManyLoDs 7: any arity works).
+// The paper's tree is a complete binary tree over n = 2^d samples (ManyLoDs 4.1). It is stored with one, two or three of its levels
+// taken at once, as a tree of arity a = 2, 4 or 8 (ManyLoDs 7: any works): opening a node reads one block, which holds the bounds of
+// its children in 16 + 8 a bytes (the price is words touched per lane).
 //
-//   slot     a node, seen as a child: slot s belongs to block s / 8. Leaves are slots [0, n), in tree order.
-//   block    the children of one inner node: slots [8 b, 8 b + 8). The inner node in slot s >= n owns block s - n, so
+//   slot     a node, seen as a child: slot s belongs to block s / a. Leaves are slots [0, n), in tree order.
+//   block    the children of one inner node: slots [a b, a b + a). The inner node in slot s >= n owns block s - n, so
 //            parent and child are one addition and one shift apart on every level, and no level needs a table.
-//   root     owns the last block, blocks - 1, which has fewer than eight children when d is not a multiple of three.
-//            The root itself sits alone in slot 8 * blocks, the first of one more block ("over the root").
+//   root     owns the last block, blocks - 1, which has fewer than a children when d is not a multiple of log2 a.
+//            The root itself sits alone in slot a * blocks, the first of one more block ("over the root").
 //
 // A block's children are quantised in the block's own frame: centre = origin + step * (x, y, z), 16 bits each; the radius
 // is a float of 16 bits (8 exponent, 8 mantissa), rounded up. Precision is relative to the block, so it holds at any
@@ -22,10 +22,35 @@
 #include "compute/views/view_io.h"
 
 MYRIAD_BEGIN
-const uint bsh_arity_log2 = 3u;
-const uint bsh_arity = 8u;
+const uint bsh_most = 8u;            // the largest arity: masks and arrays of children have room for so many
 const uint bsh_absent = 0xffffu;     // radius code of a slot without a node
+const uint bsh_max_blocks = 1u << 26;  // what cuts can tell apart (compute/manylods/cut_io.h), and of those the last is a hole's
+// Kernels walk trees of one arity, which this specialisation constant is the log2 of: its multiplications are shifts, its loops unroll.
+const uint bsh_arity_constant = 20u;
+MYRIAD_END
 
+// What slots and blocks are reckoned by.
+#ifdef __cplusplus
+namespace myriad {
+struct BshShape {
+    uint leaves = 0, blocks = 0;     // as in BshRef
+    uint arity_log2 = 3;
+
+    uint arity() const { return 1u << arity_log2; }
+    uint root() const { return blocks << arity_log2; }  // its slot
+};
+inline uint bsh_log2_of(const BshShape& shape) { return shape.arity_log2; }
+}  // namespace myriad
+#else
+layout(constant_id = bsh_arity_constant) const uint bsh_arity_log2 = 3u;
+const uint bsh_arity = 1u << bsh_arity_log2;
+struct BshShape {
+    uint leaves, blocks;
+};
+uint bsh_log2_of(BshShape shape) { return bsh_arity_log2; }
+#endif
+
+MYRIAD_BEGIN
 // What a kernel needs to walk the tree. All arrays are indexed by block or by slot as said.
 struct BshRef {
     Float4s frames;                  // by block: origin xyz, step
@@ -37,20 +62,21 @@ struct BshRef {
 };
 
 MYRIAD_FN bool bsh_is_leaf(uint slot, uint leaves) { return slot < leaves; }
-// Levels above the leaves. Level k begins at slot 8n/7 (1 - 8^-k), so 8n - 7 slot lies in (8n 8^-(k+1), 8n 8^-k].
-MYRIAD_FN uint bsh_height(uint slot, uint leaves, uint blocks) {
-    const uint depth = uint(findMSB(leaves));
-    if (slot == bsh_arity * blocks) return max((depth + bsh_arity_log2 - 1u) / bsh_arity_log2, 1u);  // the root
-    const uint left = (leaves << bsh_arity_log2) - (bsh_arity - 1u) * slot;
-    return (depth + bsh_arity_log2 - 1u - uint(findMSB(left - 1u))) / bsh_arity_log2;
+// Levels above the leaves. Level k begins at slot an/(a-1) (1 - a^-k), so an - (a-1) slot lies in (an a^-(k+1), an a^-k].
+MYRIAD_FN uint bsh_height(uint slot, BshShape shape) {
+    const uint k = bsh_log2_of(shape);
+    const uint depth = uint(findMSB(shape.leaves));
+    if (slot == shape.blocks << k) return max((depth + k - 1u) / k, 1u);  // the root
+    const uint left = (shape.leaves << k) - ((1u << k) - 1u) * slot;
+    return (depth + k - 1u - uint(findMSB(left - 1u))) / k;
 }
 // The block that an inner node owns.
-MYRIAD_FN uint bsh_block_of(uint slot, uint leaves, uint blocks) {
-    return slot == 8u * blocks ? blocks - 1u : slot - leaves;
+MYRIAD_FN uint bsh_block_of(uint slot, BshShape shape) {
+    return slot == shape.blocks << bsh_log2_of(shape) ? shape.blocks - 1u : slot - shape.leaves;
 }
 // And the inner node that owns a block, its inverse. The block over the root has no owner.
-MYRIAD_FN uint bsh_owner_of(uint block, uint leaves, uint blocks) {
-    return block + 1u == blocks ? 8u * blocks : block + leaves;
+MYRIAD_FN uint bsh_owner_of(uint block, BshShape shape) {
+    return block + 1u == shape.blocks ? shape.blocks << bsh_log2_of(shape) : block + shape.leaves;
 }
 MYRIAD_FN bool bsh_is_absent(uvec2 code) { return (code.y >> 16) == bsh_absent; }
 
@@ -96,5 +122,9 @@ MYRIAD_FN vec2 bsh_cone_cos_sin(uint cone) {
     return vec2(1.0f - t * t, t * sqrt(2.0f - t * t));
 }
 MYRIAD_END
+
+#ifndef __cplusplus
+BshShape bsh_shape(BshRef tree) { return BshShape(tree.leaves, tree.blocks); }
+#endif
 
 #endif

@@ -123,7 +123,7 @@ TEST_F(BshMovingTest, quality_is_what_it_says) {
             if (bsh_is_absent(tree.spheres[slot])) continue;
             const double own = double(tree.sphere(slot).radius);
             extent += own * own;
-            const uint block = bsh_block_of(slot, tree.leaves, tree.blocks);
+            const uint block = bsh_block_of(slot, tree);
             for (uint child = 8 * block; child < 8 * block + 8; ++child)
                 if (!bsh_is_absent(tree.spheres[child])) overlap += std::pow(double(tree.sphere(child).radius) / own, 3) / tree.blocks;
         }

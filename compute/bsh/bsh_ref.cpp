@@ -15,15 +15,16 @@ vec3 BshInput::position(uint leaf) const {
     return bsh_position(positions[t.x], positions[t.y], positions[t.z], s.u, s.v);
 }
 
-BshArrays bsh_ref(const BshInput& input) {
-    const std::vector<BshLevel> levels = bsh_levels(uint(input.samples.size()));
+BshArrays bsh_ref(const BshInput& input, uint arity) {
+    const std::vector<BshLevel> levels = bsh_levels(uint(input.samples.size()), arity);
     BshArrays tree;
     tree.leaves = levels.front().nodes;
     tree.blocks = levels.back().first_block();
+    tree.arity_log2 = levels.front().arity_log2;
     tree.frames.resize(tree.blocks + 1);
-    tree.spheres.resize(8 * (tree.blocks + 1));
-    tree.cones.resize(8 * (tree.blocks + 1));
-    tree.boxes.resize(8 * (tree.blocks + 1));
+    tree.spheres.resize(arity * (tree.blocks + 1));
+    tree.cones.resize(arity * (tree.blocks + 1));
+    tree.boxes.resize(arity * (tree.blocks + 1));
 
     std::vector<Sphere> nodes(tree.leaves);  // of the level, before they are encoded
     std::vector<BshBox> reaches(tree.leaves);
@@ -42,22 +43,23 @@ BshArrays bsh_ref(const BshInput& input) {
         std::vector<BshBox> owner_reaches;
         std::vector<uint> owner_missing;
         for (uint block = 0; block < level.blocks(); ++block) {
-            const uint slot = level.first_slot + 8 * block;
+            const uint slot = level.first_slot + arity * block;
             BshSpheres spheres;
             BshCones cones;
             BshBoxes boxes;
-            for (uint i = 0; i < 8; ++i) {
-                const uint node = std::min(8 * block + i, level.nodes - 1);
+            for (uint i = 0; i < bsh_most; ++i) {
+                const uint node = std::min(arity * block + std::min(i, arity - 1), level.nodes - 1);
                 spheres.at[i] = nodes[node];
                 cones.at[i] = tree.cones[level.first_slot + node];
                 boxes.at[i] = reaches[node];
                 boxes.missing[i] = missing[node];
             }
-            tree.frames[slot / 8] = bsh_frame(spheres);
-            for (uint i = 0; i < 8; ++i) {
-                const uvec2 code = bsh_encode(tree.frames[slot / 8], spheres.at[i]);
-                spheres.at[i] = bsh_decode(tree.frames[slot / 8], code);
-                const bool present = 8 * block + i < level.nodes;
+            const vec4 frame = tree.frames[slot / arity] = bsh_frame(spheres);
+            for (uint i = 0; i < bsh_most; ++i) {
+                const uvec2 code = bsh_encode(frame, spheres.at[i]);
+                spheres.at[i] = bsh_decode(frame, code);
+                if (i >= arity) continue;
+                const bool present = arity * block + i < level.nodes;
                 tree.spheres[slot + i] = present ? code : uvec2(0, bsh_absent << 16);
                 tree.boxes[slot + i] = present ? bsh_encode_box(spheres.at[i], boxes.at[i], boxes.missing[i]) : uvec2(0);
                 if (!present) tree.cones[slot + i] = bsh_cone_all;
@@ -66,7 +68,7 @@ BshArrays bsh_ref(const BshInput& input) {
             owners.push_back(bsh_merge(spheres));
             owner_reaches.push_back(bsh_merge_boxes(boxes));
             owner_missing.push_back(bsh_merge_missing(boxes));
-            tree.cones[level.first_slot + 8 * level.blocks() + block] = bsh_cone_merge(cones);
+            tree.cones[level.first_slot + arity * level.blocks() + block] = bsh_cone_merge(cones);
         }
         nodes = std::move(owners);
         reaches = std::move(owner_reaches);
@@ -76,12 +78,8 @@ BshArrays bsh_ref(const BshInput& input) {
 }
 
 BshArrays bsh_download(engine::Device& device, const Bsh& bsh) {
-    return {.frames = engine::download(device, bsh.frames()),
-            .spheres = engine::download(device, bsh.spheres()),
-            .cones = engine::download(device, bsh.cones()),
-            .boxes = engine::download(device, bsh.boxes()),
-            .leaves = bsh.leaves(),
-            .blocks = bsh.blocks()};
+    return {bsh.shape(), engine::download(device, bsh.frames()), engine::download(device, bsh.spheres()), engine::download(device, bsh.cones()),
+            engine::download(device, bsh.boxes())};
 }
 
 }  // namespace myriad::compute

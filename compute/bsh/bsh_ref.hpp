@@ -10,15 +10,13 @@
 namespace myriad::compute {
 
 // A hierarchy on the host; arrays as in BshRef.
-struct BshArrays {
+struct BshArrays : BshShape {
     std::vector<vec4> frames;
     std::vector<uvec2> spheres;
     std::vector<uint> cones;
     std::vector<uvec2> boxes;
-    uint leaves = 0, blocks = 0;
 
-    uint root() const { return 8 * blocks; }
-    Sphere sphere(uint slot) const { return bsh_decode(frames[slot / 8], spheres[slot]); }
+    Sphere sphere(uint slot) const { return bsh_decode(frames[slot >> arity_log2], spheres[slot]); }
 };
 
 // What the tree was made from.
@@ -32,7 +30,7 @@ struct BshInput {
     vec3 position(uint leaf) const;
 };
 
-BshArrays bsh_ref(const BshInput& input);
+BshArrays bsh_ref(const BshInput& input, uint arity = bsh_arity_default);
 BshArrays bsh_download(engine::Device& device, const Bsh& bsh);
 
 // The first violated invariant, or nothing: sizes, the root alone in its slot, every leaf reached once from the root by

@@ -200,7 +200,7 @@ TEST_F(BshTest, validator_reports_damage) {
         return bsh_check(tree, input(built, mesh));
     };
     ASSERT_EQ(bsh_check(built.tree, input(built, mesh)), "");
-    for (const BshLevel& level : bsh_levels(1024)) {
+    for (const BshLevel& level : bsh_levels(1024, 8)) {
         const uint slot = level.first_slot + level.nodes - 1;
         SCOPED_TRACE(slot);
         EXPECT_NE(fault_after([&](BshArrays& t) { t.spheres[slot].y -= 4u << 16; }), "") << "a smaller radius";
@@ -324,18 +324,6 @@ TEST(BshOrderTest, permutation_of_medians_whatever_the_threads) {
             EXPECT_NE(bsh_check_order(broken, points), "") << kind << " " << n;
         }
     EXPECT_TRUE(bsh_order({}).empty());
-}
-
-TEST(BshLevels, every_slot_knows_its_height) {
-    for (uint depth = 0; depth <= 20; ++depth) {
-        const uint leaves = 1u << depth;
-        const std::vector<BshLevel> levels = bsh_levels(leaves);
-        const uint blocks = levels.back().first_block();
-        for (uint height = 0; height < levels.size(); ++height)
-            for (uint slot = levels[height].first_slot; slot < levels[height].first_slot + levels[height].nodes; ++slot)
-                ASSERT_EQ(bsh_height(slot, leaves, blocks), height) << "depth " << depth << " slot " << slot;
-    }
-    EXPECT_EQ(bsh_height(0, 1u << 28, ((1u << 28) - 1) / 7 + 7), 0u);
 }
 
 }  // namespace

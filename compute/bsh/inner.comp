@@ -5,11 +5,11 @@
 
 void main() {
     const uint block = own_block();
-    if (8u * block >= push.nodes) return;
+    if (bsh_arity * block >= push.nodes) return;
     BshSpheres spheres;
     BshCones cones;
     BshBoxes boxes;
-    for (uint i = 0u; i < 8u; ++i) {
+    for (uint i = 0u; i < bsh_arity; ++i) {
         const uint node = child_of(block, i);
         const vec4 s = push.merged.at[push.first_child_block + node];
         spheres.at[i].center = vec3(s);

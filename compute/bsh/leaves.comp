@@ -21,11 +21,11 @@ Corners corners_of(uint triangle) {
 
 void main() {
     const uint block = own_block();
-    if (8u * block >= push.nodes) return;
+    if (bsh_arity * block >= push.nodes) return;
     BshSpheres spheres;
     BshCones cones;
     BshBoxes boxes;
-    for (uint i = 0u; i < 8u; ++i) {
+    for (uint i = 0u; i < bsh_arity; ++i) {
         const uint leaf = child_of(block, i);
         const SurfaceSample s = push.samples.at[leaf];
         const Corners at = corners_of(s.triangle);

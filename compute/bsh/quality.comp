@@ -12,8 +12,8 @@ void main() {
     for (uint block = thread_index(); block < push.blocks; block += bsh_quality_sums) {
         const float own = push.merged.at[block].w;
         float children = 0.0;
-        for (uint i = 0u; i < 8u; ++i) {
-            const uvec2 code = push.spheres.at[8u * block + i];
+        for (uint i = 0u; i < bsh_arity; ++i) {
+            const uvec2 code = push.spheres.at[bsh_arity * block + i];
             const float share = own > 0.0 && !bsh_is_absent(code) ? uintBitsToFloat((code.y >> 16) << 15) / own : 0.0;
             children += share * share * share;
         }

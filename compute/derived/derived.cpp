@@ -78,20 +78,21 @@ Bvh Derived::bvh(engine::Device& device, BvhQuality quality, OpacityReader opaci
     return {device, world_, data, std::move(opacity)};
 }
 
-Bsh Derived::bsh(engine::Device& device, uint32_t log2_samples, uint32_t seed) {
-    if (!cache_) return {device, world_, log2_samples, seed};
+Bsh Derived::bsh(engine::Device& device, uint32_t log2_samples, uint32_t seed, uint arity) {
+    check_bsh_size(log2_samples, arity);  // before the samples are made
+    if (!cache_) return {device, world_, log2_samples, seed, arity};
     const std::string entry_name = name("leaves", {log2_samples, seed});
     if (const auto entry = cache_->find(entry_name); entry && entry->parts() == 2) {
         const auto samples = entry->array<SurfaceSample>(0);
         const auto scalars = entry->array<LeavesScalars>(1);
         if (scalars.size() == 1 && (samples.empty() || samples.size() == uint64_t(1) << log2_samples))
-            return {device, world_, samples, scalars[0].area, scalars[0].radius};
+            return {device, world_, samples, scalars[0].area, scalars[0].radius, arity};
     }
     const BshLeaves leaves = bsh_leaves(world_, log2_samples, seed);
     const LeavesScalars scalars{leaves.area, leaves.radius, 0};
     const engine::Bytes parts[] = {bytes(leaves.samples), bytes(scalars)};
     cache_->store(entry_name, parts);
-    return {device, world_, leaves};
+    return {device, world_, leaves, arity};
 }
 
 SurfaceSampling Derived::samples(uint32_t log2_samples, uint32_t seed) {

@@ -18,7 +18,8 @@ public:
 
     // `opacity`: as Bvh takes it.
     Bvh bvh(engine::Device& device, BvhQuality quality = BvhQuality::quick, OpacityReader opacity = {});
-    Bsh bsh(engine::Device& device, uint32_t log2_samples, uint32_t seed);
+    // What is kept is the samples in their order, which trees of every arity have in common.
+    Bsh bsh(engine::Device& device, uint32_t log2_samples, uint32_t seed, uint arity = bsh_arity_default);
     // Samples as they come, along a curve through space, for who needs no tree.
     SurfaceSampling samples(uint32_t log2_samples, uint32_t seed);
 

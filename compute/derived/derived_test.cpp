@@ -71,6 +71,23 @@ TEST_F(DerivedTest, is_the_same_made_stored_and_found) {
     }
 }
 
+// The samples' order is that of the binary tree: what was kept of a tree of one arity serves all.
+TEST_F(DerivedTest, trees_of_every_arity_share_an_entry) {
+    const Soup soup(100);
+    engine::Cache cache(folder);
+    Derived derived(soup.world(), &cache);
+    const Bsh eight = derived.bsh(device, 9, 1);
+    for (const uint arity : {2u, 4u}) {
+        const Bsh found = derived.bsh(device, 9, 1, arity), made = Derived(soup.world(), nullptr).bsh(device, 9, 1, arity);
+        EXPECT_EQ(found.arity(), arity);
+        EXPECT_EQ(found.shape().blocks, made.shape().blocks);
+        const auto a = engine::download(device, found.samples()), b = engine::download(device, made.samples());
+        EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(SurfaceSample)), 0);
+    }
+    EXPECT_EQ(cache.missing(), 1u);
+    EXPECT_EQ(cache.found(), 2u);
+}
+
 TEST_F(DerivedTest, samples_without_a_tree) {
     for (const uint32_t count : {0, 1000}) {
         const Soup soup(count);

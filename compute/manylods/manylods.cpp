@@ -8,20 +8,22 @@ using engine::compute_kernels;
 
 namespace {
 
-// The root's block holds what is left when the binary levels are taken by threes.
+static_assert(bsh_max_blocks == cut_max_blocks);
+
+// The root's block holds what is left when the binary levels are taken so many at a time.
 uint32_t root_children(const Bsh& tree) {
-    const uint32_t rest = tree.depth() % bsh_arity_log2;
-    return rest || tree.depth() == 0 ? 1u << rest : bsh_arity;
+    const uint32_t rest = tree.depth() % tree.shape().arity_log2;
+    return rest || tree.depth() == 0 ? 1u << rest : tree.arity();
 }
 
 }  // namespace
 
 ManyLods::ManyLods(engine::Device& device, const engine::Constants& constants)
-    : seed_(device, compute_kernels, "manylods/seed", constants), open_(device, compute_kernels, "manylods/open", constants),
+    : arity_(bsh_arity_of(constants)), seed_(device, compute_kernels, "manylods/seed", constants), open_(device, compute_kernels, "manylods/open", constants),
       walk_(device, compute_kernels, "manylods/walk", constants) {}
 
 void ManyLods::record(engine::Recorder& recorder, AppendLists& lists, const ManyLodsInputs& in) const {
-    assert(in.first_view + in.limit <= cut_max_views && in.tree.blocks() < cut_max_blocks);
+    assert(in.first_view + in.limit <= cut_max_views && in.tree.blocks() < cut_max_blocks && in.tree.arity() == arity_);
     auto push = [&](const AppendRef& ref) {
         return ManyLodsPush{.lists = ref,
                             .tree = in.tree.read(recorder),
@@ -34,13 +36,14 @@ void ManyLods::record(engine::Recorder& recorder, AppendLists& lists, const Many
     lists.begin(recorder, seed_, in.view_count, in.first_view, limit);
     if (limit > 0) {
         lists.step(recorder, seed_, root_children(in.tree), push);
-        for (uint32_t level = 0; level < in.tree.levels(); ++level) lists.step(recorder, open_, bsh_arity, push);
+        for (uint32_t level = 0; level < in.tree.levels(); ++level) lists.step(recorder, open_, arity_, push);
     }
     lists.end(recorder);
 }
 
 void ManyLods::record_walk(engine::Recorder& recorder, const engine::Array<uvec2>& kept, const engine::Array<uint>& state,
                            const ManyLodsInputs& in) const {
+    assert(in.tree.arity() == arity_);
     recorder.fill(state, 0);
     if (in.tree.empty()) return;
     recorder.dispatch(walk_,

@@ -18,7 +18,7 @@ struct ManyLodsInputs {
 
 class ManyLods {
 public:
-    // `constants`: parallel_constant, for parallel views.
+    // `constants`: parallel_constant, for parallel views; bsh_constants, for trees of another arity than the default.
     explicit ManyLods(engine::Device& device, const engine::Constants& constants = {});
 
     // The basic approach (3.1): the cuts, as groups, in lists.kept(). lists.report() tells afterwards whether they fitted;
@@ -31,6 +31,7 @@ public:
                      const ManyLodsInputs& in) const;
 
 private:
+    uint arity_;
     AppendKernel seed_, open_;
     engine::Program walk_;
 };

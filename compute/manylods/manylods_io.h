@@ -44,7 +44,7 @@ MYRIAD_FN uint classify(View view, Sphere sphere, uint height, float epsilon, ui
     return height == 0u || fits(d, sphere.radius, map_size, epsilon) ? node_view_drawn : node_view_open;
 }
 
-// Of eight children in one word: drawn | culled << 8 | open << 16, a bit a slot; this is slot 0's.
+// Of a block's children in one word: drawn | culled << 8 | open << 16, a bit a slot; this is slot 0's.
 MYRIAD_FN uint node_view_bit(uint where) {
     return where == node_view_drawn ? 0x1u : where == node_view_culled ? 0x100u : 0x10000u;
 }

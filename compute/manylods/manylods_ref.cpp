@@ -7,7 +7,7 @@
 
 namespace myriad::compute {
 
-HostTree::HostTree(engine::Device& device, const Bsh& tree) : leaves(tree.leaves()), blocks(tree.blocks()) {
+HostTree::HostTree(engine::Device& device, const Bsh& tree) : BshShape(tree.shape()) {
     if (tree.empty()) return;
     frames = engine::download(device, tree.frames());
     spheres = engine::download(device, tree.spheres());
@@ -22,12 +22,12 @@ namespace {
 void visit(const HostTree& tree, uint view_index, const View& view, uint slot, float epsilon, uint map_size, CutRef& out) {
     if (tree.absent(slot)) return;
     ++out.tested;
-    switch (classify(view, tree.sphere(slot), bsh_height(slot, tree.leaves, tree.blocks), epsilon, map_size)) {
+    switch (classify(view, tree.sphere(slot), bsh_height(slot, tree), epsilon, map_size)) {
         case node_view_culled: out.cut.push_back({view_index, slot, true}); break;
         case node_view_drawn: out.cut.push_back({view_index, slot, false}); break;
         default: {
-            const uint block = bsh_block_of(slot, tree.leaves, tree.blocks);
-            for (uint i = 0; i < 8; ++i) visit(tree, view_index, view, 8 * block + i, epsilon, map_size, out);
+            const uint block = bsh_block_of(slot, tree);
+            for (uint i = 0; i < tree.arity(); ++i) visit(tree, view_index, view, tree.arity() * block + i, epsilon, map_size, out);
         }
     }
 }
@@ -36,8 +36,8 @@ uint64_t count_leaves(const HostTree& tree, uint slot, std::vector<uint8_t>& cov
     if (tree.absent(slot)) return 0;
     if (bsh_is_leaf(slot, tree.leaves)) return ++covered[slot], 1;
     uint64_t count = 0;
-    const uint block = bsh_block_of(slot, tree.leaves, tree.blocks);
-    for (uint i = 0; i < 8; ++i) count += count_leaves(tree, 8 * block + i, covered);
+    const uint block = bsh_block_of(slot, tree);
+    for (uint i = 0; i < tree.arity(); ++i) count += count_leaves(tree, tree.arity() * block + i, covered);
     return count;
 }
 
@@ -51,13 +51,13 @@ CutRef cut_ref(const HostTree& tree, const std::vector<View>& views, float epsil
     return out;
 }
 
-std::vector<NodeView> node_views(const std::vector<uvec2>& groups) {
+std::vector<NodeView> node_views(const std::vector<uvec2>& groups, uint arity) {
     std::vector<NodeView> cut;
     for (const uvec2& code : groups) {
         const CutGroup g = cut_unpack(code);
-        for (uint i = 0; i < 8; ++i) {
-            if (g.drawn >> i & 1) cut.push_back({g.view, 8 * g.block + i, false});
-            if (g.culled >> i & 1) cut.push_back({g.view, 8 * g.block + i, true});
+        for (uint i = 0; i < bsh_most; ++i) {  // a bit beyond the arity would be another block's node, and be found out
+            if (g.drawn >> i & 1) cut.push_back({g.view, arity * g.block + i, false});
+            if (g.culled >> i & 1) cut.push_back({g.view, arity * g.block + i, true});
         }
     }
     std::sort(cut.begin(), cut.end());

@@ -10,16 +10,14 @@
 namespace myriad::compute {
 
 // The tree's arrays, as read back from the device.
-struct HostTree {
+struct HostTree : BshShape {
     std::vector<vec4> frames;
     std::vector<uvec2> spheres;
-    uint leaves = 0, blocks = 0;
 
     HostTree() = default;
     HostTree(engine::Device& device, const Bsh& tree);
-    Sphere sphere(uint slot) const { return bsh_decode(frames[slot / 8], spheres[slot]); }
+    Sphere sphere(uint slot) const { return bsh_decode(frames[slot >> arity_log2], spheres[slot]); }
     bool absent(uint slot) const { return bsh_is_absent(spheres[slot]); }
-    uint root() const { return 8 * blocks; }
 };
 
 // One node-view of a cut; ordered by view, then slot.
@@ -37,7 +35,7 @@ struct CutRef {
 CutRef cut_ref(const HostTree& tree, const std::vector<View>& views, float epsilon, uint map_size);
 
 // A cut's groups, taken apart and sorted.
-std::vector<NodeView> node_views(const std::vector<uvec2>& groups);
+std::vector<NodeView> node_views(const std::vector<uvec2>& groups, uint arity = bsh_arity_default);
 
 // The first violation of the partition invariant (spec, section 3): every leaf has exactly one ancestor-or-self in the cut of
 // every view. Empty: none.

@@ -11,8 +11,8 @@
 // replaces an item by all of its children. Children exist once, so no node-view is ever made twice. After `levels` steps no
 // item is active, since leaves are never open.
 //
-// The paper tests one node-view a thread and appends its children; testing the eight children at once reads the pair, the
-// view and the frame once for eight node-views, and writes one group for them.
+// The paper tests one node-view a thread and appends its children; testing the children of a block at once reads the
+// pair, the view and the frame once for up to eight node-views, and writes one group for them.
 #include "compute/append/append.glsl"
 #include "compute/manylods/open.glsl"
 layout(push_constant, scalar) uniform Push { ManyLodsPush push; };
@@ -31,5 +31,5 @@ void main() {
     if (!append_writes) return;
     if (kept != 0u) append_kept(at.y, cut_pack(pair.x, pair.y, kept), push.lists);
     for (uint next = at.x; open != 0u; ++next, open &= open - 1u)
-        append_next(next, uvec2(8u * pair.x + findLSB(open) - push.tree.leaves, pair.y), push.lists);
+        append_next(next, uvec2(bsh_arity * pair.x + findLSB(open) - push.tree.leaves, pair.y), push.lists);
 }

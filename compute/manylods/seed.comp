@@ -11,8 +11,8 @@ void main() {
     const uint over_root = push.tree.blocks;
     uint found = 0u;
     if (append_decides(item, push.lists))
-        found = classify_child(push.views.at[view], push.tree.frames.at[over_root], push.tree.spheres.at[8u * over_root],
-                               bsh_height(8u * over_root, push.tree.leaves, over_root), push.epsilon, push.map_size);
+        found = classify_child(push.views.at[view], push.tree.frames.at[over_root], push.tree.spheres.at[bsh_arity * over_root],
+                               bsh_height(bsh_arity * over_root, bsh_shape(push.tree)), push.epsilon, push.map_size);
     found = append_payload(item, found, push.lists);
 
     const uint kept = found & 0xffffu;

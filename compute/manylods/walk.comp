@@ -2,13 +2,17 @@
 #extension GL_GOOGLE_include_directive : require
 // The rival of the lists: one invocation walks one view's whole cut, depth first, with nothing in memory but the tree.
 //
-// The walk keeps, for each depth, the mask of children still to be opened: eight bits a depth, four depths a word. Going up
-// is arithmetic (bsh_io.h). The same groups come out as from the lists, in another order.
+// The walk keeps, for each depth, the mask of children still to be opened: as many bits as the arity, which are depths enough for
+// any tree. Going up is arithmetic (bsh_io.h). The same groups come out as from the lists, in another order.
 #include "engine/kernel.glsl"
 #include "compute/manylods/open.glsl"
 layout(push_constant, scalar) uniform Push { WalkPush push; };
 
-uint byte_of(uvec4 words, uint i) { return (words[i >> 2] >> (8u * (i & 3u))) & 0xffu; }
+// Where a depth's mask is: the word, and the bit in it.
+const uint masks_log2 = 5u - bsh_arity_log2;  // in a word
+uint word_of(uint depth) { return depth >> masks_log2; }
+uint bit_of(uint depth) { return bsh_arity * (depth & ((1u << masks_log2) - 1u)); }
+const uint mask = (1u << bsh_arity) - 1u;
 
 void keep(uint block, uint view, uint masks) {
     if (masks == 0u) return;
@@ -24,8 +28,8 @@ void main() {
     const uint leaves = push.tree.leaves;
     const uint over_root = push.tree.blocks;
 
-    const uint root = classify_child(view, push.tree.frames.at[over_root], push.tree.spheres.at[8u * over_root],
-                                     bsh_height(8u * over_root, leaves, over_root), push.epsilon, push.map_size);
+    const uint root = classify_child(view, push.tree.frames.at[over_root], push.tree.spheres.at[bsh_arity * over_root],
+                                     bsh_height(bsh_arity * over_root, bsh_shape(push.tree)), push.epsilon, push.map_size);
     keep(over_root, view_index, root & 0xffffu);
     if ((root >> 16) == 0u) return;
 
@@ -38,19 +42,19 @@ void main() {
         if (arrived) {
             const uint found = open_block(block, view, push.tree, push.epsilon, push.map_size);
             keep(block, view_index, found & 0xffffu);
-            pending[depth >> 2] = (pending[depth >> 2] & ~(0xffu << (8u * (depth & 3u)))) | ((found >> 16) << (8u * (depth & 3u)));
+            pending[word_of(depth)] = (pending[word_of(depth)] & ~(mask << bit_of(depth))) | ((found >> 16) << bit_of(depth));
             ++opened;
         }
-        const uint open = byte_of(pending, depth);
+        const uint open = (pending[word_of(depth)] >> bit_of(depth)) & mask;
         if (open != 0u) {  // down, into the first child that is left
-            pending[depth >> 2] &= ~((open & (~open + 1u)) << (8u * (depth & 3u)));
-            block = 8u * block + findLSB(open) - leaves;
+            pending[word_of(depth)] &= ~((open & (~open + 1u)) << bit_of(depth));
+            block = bsh_arity * block + findLSB(open) - leaves;
             ++depth;
             arrived = true;
         } else {           // up
             if (depth == 0u) break;
             --depth;
-            block = (block + leaves) >> 3;
+            block = (block + leaves) >> bsh_arity_log2;
             arrived = false;
         }
     }

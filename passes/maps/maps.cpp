@@ -10,7 +10,11 @@ namespace {
 
 uint32_t round_up(uint32_t value, uint32_t multiple) { return (value + multiple - 1) / multiple * multiple; }
 
-engine::Constants kind_of_views(const MapSettings& settings) { return {{parallel_constant, settings.parallel}}; }
+engine::Constants kind_of(const MapSettings& settings) {
+    engine::Constants constants = compute::bsh_constants(settings.arity);
+    constants[parallel_constant] = settings.parallel;
+    return constants;
+}
 
 uint64_t atlas_words(uint32_t views, uint32_t map_size) { return uint64_t(views) * map_texels(map_size); }
 
@@ -35,9 +39,9 @@ ViewMaps::ViewMaps(engine::Device& device, const MapSettings& settings, uint32_t
     while (batch_ > multiple_ && !is_handy(batch_)) halve();
     make_atlas();
     if (settings.method != MapMethod::manylods) return;
-    splat_.emplace(device, kind_of_views(settings));
+    splat_.emplace(device, kind_of(settings));
     if (settings.update != CutUpdate::basic) return;  // lists come with the first frame, one a batch
-    manylods_.emplace(device, kind_of_views(settings));
+    manylods_.emplace(device, kind_of(settings));
     const uint64_t affordable = device_.memory_free() / 2 / (4 * sizeof(uvec2));
     const uint64_t kept = std::min({groups_guess(batch_), affordable, AppendLists::max_capacity});
     make_lists(std::max<uint64_t>(kept - kept / 4, batch_), std::max<uint64_t>(kept, 1));
@@ -74,7 +78,7 @@ void ViewMaps::make_lists(uint64_t next, uint64_t kept) {
 void ViewMaps::make_carried(uint32_t index, uint64_t capacity) {
     if (carried_.size() <= index) carried_.resize(index + 1);
     carried_[index].reset();
-    carried_[index] = std::make_unique<compute::CarriedCut>(device_, settings_.append, capacity, index * batch_, batch_, kind_of_views(settings_));
+    carried_[index] = std::make_unique<compute::CarriedCut>(device_, settings_.append, capacity, index * batch_, batch_, kind_of(settings_));
 }
 
 void ViewMaps::record(engine::Recorder& recorder, const MapScene& scene, const engine::Array<View>& views, const engine::Array<uint>& count,
@@ -103,7 +107,7 @@ void ViewMaps::record(engine::Recorder& recorder, const MapScene& scene, const e
         carried_now_ = carried_[index].get();
         auto scope = recorder.scope("cut");
         if (tree.moving_blocks() > 0) {
-            if (!bounds_travel_) bounds_travel_.emplace(device_);
+            if (!bounds_travel_) bounds_travel_.emplace(device_, settings_.arity);
             bounds_travel_->record(recorder, tree);
         }
         carried_now_->record(recorder, cut, {.everything = settings_.revalidate, .edges = settings_.update == CutUpdate::lazy ? settings_.lazy_edges : 0},

@@ -37,6 +37,7 @@ struct MapSettings {
     CutUpdate update = CutUpdate::basic;
     uint32_t lazy_edges = 1;  // q of the paper, at least 1
     bool parallel = false;    // manylods: views are parallel ones (compute/views/parallel.h), all of them
+    uint32_t arity = compute::bsh_arity_default;  // of the tree
     bool revalidate = false;  // incremental and lazy: every node-view in every frame, as the paper does
 };
 

@@ -69,7 +69,7 @@ void main() {
     const vec4 frame = push.tree.frames.at[g.block];
     const uint map = (g.view - push.first_view) * map_texels(push.map_size);
     for (; drawn != 0u; drawn &= drawn - 1u) {
-        const uint slot = 8u * g.block + findLSB(drawn);
+        const uint slot = bsh_arity * g.block + findLSB(drawn);
         const uvec2 box = push.tree.boxes.at[slot];
         if (!opacity_in_view(bsh_missing(box), g.view)) continue;
         draw(view, bsh_decode(frame, push.tree.spheres.at[slot]), push.tree.cones.at[slot], box, map);

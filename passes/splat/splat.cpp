@@ -4,9 +4,9 @@
 
 namespace myriad::passes {
 
-// A leaf around the view may scan its whole map. Where an invocation's loops are limited it draws one node, not eight.
+// A leaf around the view may scan its whole map. Where an invocation's loops are limited it draws one node, not a group's.
 SplatPass::SplatPass(engine::Device& device, engine::Constants constants)
-    : device_(device), threads_per_group_(device.loop_limit() == ~0u ? 1 : 8), splat_([&] {
+    : device_(device), threads_per_group_(device.loop_limit() == ~0u ? 1 : compute::bsh_arity_of(constants)), splat_([&] {
           constants[2] = threads_per_group_;
           return engine::Program(device, engine::passes_kernels, "splat/splat", constants);
       }()), grid_(device) {}

@@ -21,7 +21,7 @@ struct SplatInputs {
 
 class SplatPass {
 public:
-    // `constants`: parallel_constant, for parallel views.
+    // `constants`: as compute::ManyLods.
     explicit SplatPass(engine::Device& device, engine::Constants constants = {});
 
     // Throws InputError when maps of this size cannot be drawn on the device (a driver that limits loops).

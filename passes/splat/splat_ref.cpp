@@ -43,8 +43,8 @@ std::vector<uint> splat_ref(const compute::BshArrays& tree, std::span<const uvec
     std::vector<uint> atlas(size_t(maps) * map_texels(map_size), atlas_nothing);
     for (const uvec2& code : groups) {
         const CutGroup g = cut_unpack(code);
-        for (uint slot = 8 * g.block; slot < 8 * g.block + 8; ++slot)
-            if ((g.drawn >> slot % 8 & 1) && opacity_in_view(bsh_missing(tree.boxes[slot]), g.view)) {
+        for (uint slot = tree.arity() * g.block; slot < tree.arity() * (g.block + 1); ++slot)
+            if ((g.drawn >> slot % tree.arity() & 1) && opacity_in_view(bsh_missing(tree.boxes[slot]), g.view)) {
                 const View& view = views[g.view];
                 const Splat s = splat_of(view, tree.sphere(slot), tree.cones[slot], tree.boxes[slot]);
                 uint* map = &atlas[size_t(g.view - first_view) * map_texels(map_size)];

@@ -35,7 +35,12 @@ protected:
         }
         return views;
     }
-    static engine::Constants kind_of(const std::vector<View>& views) { return {{parallel_constant, !views.empty() && is_parallel(views[0])}}; }
+    uint arity = 8;
+    engine::Constants kind_of(const std::vector<View>& views) const {
+        engine::Constants constants = compute::bsh_constants(arity);
+        constants[parallel_constant] = !views.empty() && is_parallel(views[0]);
+        return constants;
+    }
 
     // A scene and its tree on the device, and the tree read back.
     struct Tree {
@@ -47,7 +52,7 @@ protected:
     Tree grow(const TestScene& scene, uint32_t log2_samples) {
         auto uploaded = std::make_unique<UploadedScene>(device, scene);
         const compute::WorldTriangles& world = uploaded->data.world;
-        Tree tree{scene, std::move(uploaded), Bsh(device, world, log2_samples, 1), {}};
+        Tree tree{scene, std::move(uploaded), Bsh(device, world, log2_samples, 1, arity), {}};
         if (tree.bsh.empty()) return tree;
         engine::Recorder recorder(device);
         tree.bsh.refit(recorder, tree.uploaded->geometry.positions(), tree.uploaded->geometry.triangles(), nullptr, tree.uploaded->geometry.opacity());
@@ -98,7 +103,9 @@ protected:
             pass.record(recorder, {lists, tree.bsh, on, o.first, map_size}, atlas);
         } else {
             recorder.fill(atlas, atlas_nothing);
-            const engine::Program program(device, engine::passes_kernels, "splat/splat", {{2, o.threads_per_group}, *kind_of(views).begin()});
+            engine::Constants constants = kind_of(views);
+            constants[2] = o.threads_per_group;
+            const engine::Program program(device, engine::passes_kernels, "splat/splat", constants);
             grid.dispatch(recorder, program, lists.state(), AppendLists::kept_word, lists.kept_capacity(), o.threads_per_group, [&] {
                 return SplatPush{recorder.read(lists.kept()), recorder.read(lists.state(), AppendLists::kept_word),
                                  recorder.read(lists.state(), AppendLists::failed_word), tree.bsh.read(recorder),
@@ -124,6 +131,14 @@ TEST_F(SplatTest, cuts_of_every_map_size) {
     for (uint size : {2u, 3u, 16u, 31u, 64u}) {
         SCOPED_TRACE(size);
         for (float epsilon : {0.3f, 2.0f}) EXPECT_GT(check(tree, random_views(9, 1.5f), epsilon, size), 0.2);
+    }
+}
+
+TEST_F(SplatTest, trees_of_every_arity) {
+    for (const uint a : {2u, 4u}) {
+        SCOPED_TRACE(a);
+        arity = a;
+        for (const uint32_t depth : {0u, 1u, 3u, 9u}) check(random_tree(depth), random_views(9, 1.5f), 1, 16);
     }
 }
 

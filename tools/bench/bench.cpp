@@ -35,11 +35,12 @@ nlohmann::json BenchRow::json(const engine::DeviceInfo& device) const {
 
 const std::vector<Bench>& benches() {
     static const std::vector<Bench> all = {
-        {"manylods", "cut and splat of many VPL views: the device's lists and walks against native ones", bench_manylods},
-        {"manylods-table1", "maps of a moving light's VPLs: brute, ISM, basic, incremental and lazy cuts, with their errors", bench_table1},
+        {"manylods", "cut and splat of many VPL views: the device's lists and walks against native ones", bench_manylods, {"--arity"}},
+        {"manylods-table1", "maps of a moving light's VPLs: brute, ISM, basic, incremental and lazy cuts, with their errors", bench_table1, {"--arity"}},
         {"manylods-fig8", "cuts over a clip, frame by frame: basic, incremental and lazy", bench_fig8,
-         {"--animation", "--frames", "--csv", "--plot"}},
-        {"manylods-ism", "imperfect shadow maps with the points a map that take ManyLoDs' time, diffuse and glossy", bench_equal_time, {"--images"}},
+         {"--animation", "--frames", "--csv", "--plot", "--arity"}},
+        {"manylods-ism", "imperfect shadow maps with the points a map that take ManyLoDs' time, diffuse and glossy", bench_equal_time, {"--images", "--arity"}},
+        {"manylods-arity", "trees of arity 2, 4 and 8: what they take, to refit and to be cut, from the roots and from the frame before", bench_arity},
     };
     return all;
 }
@@ -101,6 +102,7 @@ void add_bench(CLI::App& app) {
     bench->add_option("--camera", o.camera, "of the scene, by name or index, where an experiment makes images (the first)");
     bench->add_option("--views", o.views, "numbers of views, separated by commas")->delimiter(',')->check(CLI::Range(1u, 1u << 20));
     bench->add_option("--samples", o.log2_samples, "log2 of the number of surface samples (20)")->check(CLI::Range(0u, 26u));
+    bench->add_option("--arity", o.arity, "children of a node of the tree: 2, 4 or 8 (8)")->check(CLI::IsMember({2u, 4u, 8u}));
     bench->add_option("--map-size", o.map_size, "texels a side of a half map (32)")->check(CLI::Range(2u, 1024u));
     bench->add_option("--epsilon", o.epsilon, "criterion, texels (1)")->check(CLI::Range(0.01f, 1000.0f));
     bench->add_option("--repeat", o.repeats, "measured runs of each row, after a warm-up (5)")->check(CLI::Range(1u, 1000u));

@@ -40,6 +40,7 @@ struct BenchOptions {
     std::string camera;
     std::vector<uint32_t> views;    // empty: the experiment's own
     uint32_t log2_samples = 20;
+    uint32_t arity = 8;             // of the tree over them
     uint32_t map_size = 32;
     float epsilon = 1;
     uint32_t repeats = 5;
@@ -68,6 +69,8 @@ void bench_manylods(engine::Device& device, const BenchOptions& options, const R
 void bench_table1(engine::Device& device, const BenchOptions& options, const RowSink& sink);
 // bench/fig8.cpp
 void bench_fig8(engine::Device& device, const BenchOptions& options, const RowSink& sink);
+// bench/arity.cpp
+void bench_arity(engine::Device& device, const BenchOptions& options, const RowSink& sink);
 // bench/equal_time.cpp
 void bench_equal_time(engine::Device& device, const BenchOptions& options, const RowSink& sink);
 

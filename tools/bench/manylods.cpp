@@ -62,7 +62,7 @@ struct Experiment {
         r.scene = scene;
         r.technique = technique;
         r.views = count;
-        r.settings = {{"epsilon", options.epsilon}, {"map_size", options.map_size}, {"samples", tree.leaves()}, {"arity", bsh_arity}};
+        r.settings = {{"epsilon", options.epsilon}, {"map_size", options.map_size}, {"samples", tree.leaves()}, {"arity", tree.arity()}};
         return r;
     }
 
@@ -71,7 +71,7 @@ struct Experiment {
         r.settings["append"] = mode == compute::AppendMode::scan ? "scan" : "atomic";
         const auto on_device = engine::upload(device, "vpls", "bench view count", std::vector<uint>{count});
         device.reset_memory_peaks();
-        passes::ViewMaps maps(device, {mode, options.map_size, options.epsilon}, count, 1);
+        passes::ViewMaps maps(device, {.append = mode, .map_size = options.map_size, .epsilon = options.epsilon, .arity = tree.arity()}, count, 1);
         engine::Recorder recorder(device);
         passes::MapCounters counters;
         for (uint32_t run = 0; run <= options.repeats; ++run) {  // run 0 warms up, lets the lists grow, and is compared
@@ -108,7 +108,7 @@ struct Experiment {
         device.reset_memory_peaks();
         engine::Array<uvec2> kept(device, "lists", "walk cut", groups);
         engine::Array<uint> state(device, "lists", "walk state", sizeof(AppendState) / sizeof(uint));
-        compute::ManyLods manylods(device);
+        compute::ManyLods manylods(device, compute::bsh_constants(tree.arity()));
         engine::Recorder recorder(device);
         for (uint32_t run = 0; run <= options.repeats; ++run) {
             {
@@ -179,7 +179,8 @@ void bench_manylods(engine::Device& device, const BenchOptions& options, const R
     const compute::WorldTriangles& world = data.world;
     const compute::Bvh bvh(device, world, compute::BvhQuality::quick, geometry.opacity());
     passes::VplPass vpls(device, most * 4, bvh.constants());
-    compute::Bsh tree(device, world, options.log2_samples, options.seed);
+    compute::check_bsh_size(options.log2_samples, options.arity);
+    compute::Bsh tree(device, world, options.log2_samples, options.seed, options.arity);
     engine::Recorder recorder(device);
     vpls.record(recorder, geometry, bvh, lights, 1, options.seed);
     tree.refit(recorder, geometry.positions(), geometry.triangles(), geometry.instances(), geometry.opacity());
@@ -189,11 +190,11 @@ void bench_manylods(engine::Device& device, const BenchOptions& options, const R
     std::vector<View> views = engine::download(device, vpls.views(), alive);
     std::vector<View> spread(most);  // evenly over all paths
     for (uint32_t i = 0; i < most; ++i) spread[i] = views[size_t(i) * alive / most];
-    std::printf("scene: %s, %zu triangles, 2^%u samples, %u blocks, maps 2 x %u^2, epsilon %g\n", source.c_str(), size_t(triangles.count()),
-                tree.depth(), tree.blocks(), options.map_size, options.epsilon);
+    std::printf("scene: %s, %zu triangles, 2^%u samples, %u blocks of %u, maps 2 x %u^2, epsilon %g\n", source.c_str(), size_t(triangles.count()),
+                tree.depth(), tree.blocks(), tree.arity(), options.map_size, options.epsilon);
 
-    NativeTree native{engine::download(device, tree.frames()), engine::download(device, tree.spheres()), engine::download(device, tree.cones()),
-                      tree.leaves(), tree.blocks()};
+    NativeTree native{tree.shape(), engine::download(device, tree.frames()), engine::download(device, tree.spheres()),
+                      engine::download(device, tree.cones())};
     Experiment experiment{device, options, sink, std::filesystem::path(source).filename().string(), std::move(tree),
                           engine::upload(device, "vpls", "bench views", spread), spread, std::move(native)};
     for (uint32_t count : counts) {

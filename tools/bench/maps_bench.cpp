@@ -1,5 +1,6 @@
 #include "tools/bench/maps_bench.hpp"
 
+#include <cmath>
 #include <filesystem>
 
 namespace myriad::tools {
@@ -15,7 +16,20 @@ passes::FrameSettings frame_settings(const BenchOptions& options, uint32_t views
     settings.log2_samples = options.log2_samples;
     settings.maps.map_size = options.map_size;
     settings.maps.epsilon = options.epsilon;
+    settings.maps.arity = options.arity;
     return settings;
+}
+
+scenes::Moment Turntable::at(double degrees) const {
+    scenes::Moment moment = scenes::moment_at(scene, triangles.motion, 0);
+    const double a = degrees * 3.14159265358979323846 / 180;
+    const glm::dmat3 turn(std::cos(a), 0, -std::sin(a), 0, 1, 0, std::sin(a), 0, std::cos(a));
+    const glm::dvec3 middle = 0.5 * (glm::dvec3(triangles.lo) + glm::dvec3(triangles.hi));
+    for (scenes::Light& light : moment.lights) {
+        light.position = glm::vec3(middle + turn * (glm::dvec3(light.position) - middle));
+        light.direction = glm::vec3(glm::normalize(turn * glm::dvec3(light.direction)));
+    }
+    return moment;
 }
 
 BenchRow maps_row(const char* bench, const std::string& source, const char* technique, const passes::FrameSettings& settings) {
@@ -29,6 +43,7 @@ BenchRow maps_row(const char* bench, const std::string& source, const char* tech
     if (settings.visibility == Visibility::manylods) {
         row.settings["epsilon"] = settings.maps.epsilon;
         row.settings["samples"] = uint64_t(1) << settings.log2_samples;
+        row.settings["arity"] = settings.maps.arity;
         if (settings.maps.update == CutUpdate::incremental) row.settings["revalidate"] = settings.maps.revalidate ? "all" : "due";
         if (settings.maps.update == CutUpdate::lazy) row.settings["q"] = settings.maps.lazy_edges;
     }

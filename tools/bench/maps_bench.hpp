@@ -2,12 +2,22 @@
 #pragma once
 
 #include "passes/frame.hpp"
+#include "scenes/moment.hpp"
 #include "tools/bench/bench.hpp"
 
 namespace myriad::tools {
 
 // 320 x 180 pixels, `views` VPLs, and the options' maps, samples and seed.
 passes::FrameSettings frame_settings(const BenchOptions& options, uint32_t views);
+
+// A scene whose lights go around it, without those that are emitting surfaces.
+struct Turntable {
+    const scenes::Scene& scene;
+    const scenes::Triangles& triangles;
+
+    // Lights at `degrees` around the vertical through the scene's middle.
+    scenes::Moment at(double degrees) const;
+};
 
 // A row with the settings that say what is in it. `source` is shortened to its file's name.
 BenchRow maps_row(const char* bench, const std::string& source, const char* technique, const passes::FrameSettings& settings);

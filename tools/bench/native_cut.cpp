@@ -9,13 +9,14 @@ namespace myriad::tools {
 namespace {
 
 // What compute/manylods/manylods_io.h's classify_child says of each of a block's children: drawn | culled << 8 | open << 16.
-// Loops over eight, without branches, so that they vectorise; the arithmetic is that of the shared header.
+// Loops over a constant number, without branches, so that they vectorise; the arithmetic is that of the shared header.
+template <uint arity>
 inline uint open_block(const NativeTree& tree, uint block, const View& view, float epsilon, float map_size) {
     const vec4 frame = tree.frames[block];
-    const uvec2* codes = &tree.spheres[size_t(block) * 8];
-    float x[8], y[8], z[8], r[8];
-    uint present[8];
-    for (int i = 0; i < 8; ++i) {
+    const uvec2* codes = &tree.spheres[size_t(block) * arity];
+    float x[arity], y[arity], z[arity], r[arity];
+    uint present[arity];
+    for (uint i = 0; i < arity; ++i) {
         x[i] = frame.x + frame.w * float(int(codes[i].x & 0xffffu)) - view.position.x;
         y[i] = frame.y + frame.w * float(int(codes[i].x >> 16)) - view.position.y;
         z[i] = frame.z + frame.w * float(int(codes[i].y & 0xffffu)) - view.position.z;
@@ -24,9 +25,9 @@ inline uint open_block(const NativeTree& tree, uint block, const View& view, flo
     }
     const vec3 n = view.direction;
     const bool cone = view.cos_phi != 0;
-    const uint height = bsh_height(8 * block, tree.leaves, tree.blocks);
-    uint outside[8], small[8];
-    for (int i = 0; i < 8; ++i) {
+    const uint height = bsh_height(arity * block, tree);
+    uint outside[arity], small[arity];
+    for (uint i = 0; i < arity; ++i) {
         const float l2 = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
         const float a = n.x * x[i] + n.y * y[i] + n.z * z[i];
         float distance = -a * view.sin_phi;
@@ -44,7 +45,7 @@ inline uint open_block(const NativeTree& tree, uint block, const View& view, flo
     }
     const uint leaf = height == 0 ? ~0u : 0u;
     uint found = 0;
-    for (int i = 0; i < 8; ++i) {
+    for (uint i = 0; i < arity; ++i) {
         const uint culled = present[i] & outside[i];
         const uint drawn = present[i] & ~outside[i] & (small[i] | leaf);
         const uint open = present[i] & ~outside[i] & ~(small[i] | leaf);
@@ -55,13 +56,12 @@ inline uint open_block(const NativeTree& tree, uint block, const View& view, flo
 
 uint children(const NativeTree& tree, uint block) {
     uint n = 0;
-    for (uint i = 0; i < 8; ++i) n += !bsh_is_absent(tree.spheres[size_t(block) * 8 + i]);
+    for (uint i = 0; i < tree.arity(); ++i) n += !bsh_is_absent(tree.spheres[size_t(block) * tree.arity() + i]);
     return n;
 }
 
 uint root_of(const NativeTree& tree, const View& view, float epsilon, uint map_size) {
-    return classify_child(view, tree.frames[tree.blocks], tree.spheres[size_t(tree.blocks) * 8], bsh_height(8 * tree.blocks, tree.leaves, tree.blocks),
-                          epsilon, map_size);
+    return classify_child(view, tree.frames[tree.blocks], tree.spheres[tree.root()], bsh_height(tree.root(), tree), epsilon, map_size);
 }
 
 }  // namespace
@@ -105,7 +105,8 @@ inline void NativeCuts::keep(Lists& out, uint block, uint view, uint found) {
     if (found & 0xffffu) out.kept.push_back(cut_pack(block, view, found & 0xffffu));
 }
 
-void NativeCuts::lists(const NativeTree& tree, const std::vector<View>& views, float epsilon, uint map_size) {
+template <uint arity>
+void NativeCuts::lists_of(const NativeTree& tree, const std::vector<View>& views, float epsilon, uint map_size) {
     const uint root_children = children(tree, tree.blocks - 1);
     parallel(views.size(), [&](Lists& out, size_t begin, size_t end) {
         out.next.clear();
@@ -115,21 +116,22 @@ void NativeCuts::lists(const NativeTree& tree, const std::vector<View>& views, f
             if (root >> 16) out.next.push_back({tree.blocks - 1, uint(v)});
         }
         out.node_views += end - begin;
-        for (uint work = root_children; !out.next.empty(); work = 8) {
+        for (uint work = root_children; !out.next.empty(); work = arity) {
             out.items.swap(out.next);
             out.next.clear();
             for (const uvec2& pair : out.items) {
-                const uint found = open_block(tree, pair.x, views[pair.y], epsilon, float(map_size));
+                const uint found = open_block<arity>(tree, pair.x, views[pair.y], epsilon, float(map_size));
                 keep(out, pair.x, pair.y, found);
                 for (uint open = found >> 16; open; open &= open - 1)
-                    out.next.push_back({8 * pair.x + uint(__builtin_ctz(open)) - tree.leaves, pair.y});
+                    out.next.push_back({arity * pair.x + uint(__builtin_ctz(open)) - tree.leaves, pair.y});
             }
             out.node_views += out.items.size() * work;
         }
     });
 }
 
-void NativeCuts::depth_first(const NativeTree& tree, const std::vector<View>& views, float epsilon, uint map_size) {
+template <uint arity>
+void NativeCuts::depth_first_of(const NativeTree& tree, const std::vector<View>& views, float epsilon, uint map_size) {
     const uint root_children = children(tree, tree.blocks - 1);
     parallel(views.size(), [&](Lists& out, size_t begin, size_t end) {
         for (size_t v = begin; v < end; ++v) {
@@ -142,14 +144,26 @@ void NativeCuts::depth_first(const NativeTree& tree, const std::vector<View>& vi
             while (!out.stack.empty()) {
                 const uint block = out.stack.back();
                 out.stack.pop_back();
-                const uint found = open_block(tree, block, view, epsilon, float(map_size));
-                out.node_views += block == tree.blocks - 1 ? root_children : 8;
+                const uint found = open_block<arity>(tree, block, view, epsilon, float(map_size));
+                out.node_views += block == tree.blocks - 1 ? root_children : arity;
                 keep(out, block, uint(v), found);
                 for (uint open = found >> 16; open; open &= open - 1)
-                    out.stack.push_back(8 * block + uint(__builtin_ctz(open)) - tree.leaves);
+                    out.stack.push_back(arity * block + uint(__builtin_ctz(open)) - tree.leaves);
             }
         }
     });
+}
+
+void NativeCuts::lists(const NativeTree& tree, const std::vector<View>& views, float epsilon, uint map_size) {
+    if (tree.arity() == 2) lists_of<2>(tree, views, epsilon, map_size);
+    else if (tree.arity() == 4) lists_of<4>(tree, views, epsilon, map_size);
+    else lists_of<8>(tree, views, epsilon, map_size);
+}
+
+void NativeCuts::depth_first(const NativeTree& tree, const std::vector<View>& views, float epsilon, uint map_size) {
+    if (tree.arity() == 2) depth_first_of<2>(tree, views, epsilon, map_size);
+    else if (tree.arity() == 4) depth_first_of<4>(tree, views, epsilon, map_size);
+    else depth_first_of<8>(tree, views, epsilon, map_size);
 }
 
 }  // namespace myriad::tools

@@ -1,7 +1,7 @@
 // The rival on the host: the same cuts by plain C++ with threads, to measure the device's kernels against.
 //
-// The same algorithms over the same tree in the same arithmetic, written the way that suits a CPU: the eight children of a
-// block are decided in loops over eight floats, which the compiler turns into one AVX register each (this file alone is compiled
+// The same algorithms over the same tree in the same arithmetic, written the way that suits a CPU: the children of a block are
+// decided in loops over so many floats, of which the compiler turns eight into one AVX register each (this file alone is compiled
 // for x86-64-v3); each thread appends to vectors of its own. The cut is the device's, node-view for node-view.
 #pragma once
 
@@ -14,11 +14,10 @@
 namespace myriad::tools {
 
 // The tree's arrays on the host; see compute/bsh/bsh_io.h.
-struct NativeTree {
+struct NativeTree : BshShape {
     std::vector<vec4> frames;
     std::vector<uvec2> spheres;
     std::vector<uint> cones;
-    uint leaves = 0, blocks = 0;
 };
 
 // False where this processor cannot run what this file was compiled for.
@@ -46,6 +45,8 @@ private:
         std::vector<uint> stack;
         uint64_t node_views = 0;
     };
+    template <uint arity> void lists_of(const NativeTree& tree, const std::vector<View>& views, float epsilon, uint map_size);
+    template <uint arity> void depth_first_of(const NativeTree& tree, const std::vector<View>& views, float epsilon, uint map_size);
     template <class Work> void parallel(size_t views, Work work);
     void keep(Lists& out, uint block, uint view, uint found);
 

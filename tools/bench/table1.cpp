@@ -1,10 +1,8 @@
 // `myriad bench manylods-table1`: Table 1 of ManyLoDs. The scene's lights, without those that are emitting surfaces, go around it, 1 and 10
 // degrees a frame, and the maps of their VPLs are drawn anew in each. Rows: the paper's competitors and the three updates of the cuts; `ms`
 // is what the maps take, cut and splat or what stands in their place, `error` is the last frame's, against the same VPLs with exact rays.
-#include <cmath>
 #include <cstdio>
 
-#include "scenes/moment.hpp"
 #include "scenes/sky.hpp"
 #include "tools/bench/maps_bench.hpp"
 #include "tools/metrics.hpp"
@@ -33,25 +31,6 @@ const Technique techniques[] = {
     {"lazy", Visibility::manylods, CutUpdate::lazy},
 };
 
-struct Turntable {
-    const scenes::Scene& scene;
-    const scenes::Triangles& triangles;
-    scenes::Camera camera;
-
-    // Lights at `degrees` around the vertical through the scene's middle.
-    scenes::Moment at(double degrees) const {
-        scenes::Moment moment = scenes::moment_at(scene, triangles.motion, 0);
-        const double a = degrees * 3.14159265358979323846 / 180;
-        const glm::dmat3 turn(std::cos(a), 0, -std::sin(a), 0, 1, 0, std::sin(a), 0, std::cos(a));
-        const glm::dvec3 middle = 0.5 * (glm::dvec3(triangles.lo) + glm::dvec3(triangles.hi));
-        for (scenes::Light& light : moment.lights) {
-            light.position = glm::vec3(middle + turn * (glm::dvec3(light.position) - middle));
-            light.direction = glm::vec3(glm::normalize(turn * glm::dvec3(light.direction)));
-        }
-        return moment;
-    }
-};
-
 }  // namespace
 
 void bench_table1(engine::Device& device, const BenchOptions& options, const RowSink& sink) {
@@ -61,7 +40,8 @@ void bench_table1(engine::Device& device, const BenchOptions& options, const Row
     scenes::apply_sky(scene, scenes::SkyChoice::automatic);
     const scenes::Triangles triangles = scenes::flatten(scene);
     if (scene.lights.empty()) throw InputError("\"" + source + "\" has no punctual light to move; give another --scene");
-    const Turntable table{scene, triangles, scenes::pick_camera(scene, triangles, options.camera)};
+    const Turntable table{scene, triangles};
+    const scenes::Camera camera = scenes::pick_camera(scene, triangles, options.camera);
     const std::vector<uint32_t> counts = options.views.empty() ? std::vector<uint32_t>{1024} : options.views;
     std::printf("scene: %s, %zu triangles, 2^%u samples, maps 2 x %u^2, epsilon %g\n", source.c_str(), size_t(triangles.count()), options.log2_samples,
                 options.map_size, options.epsilon);
@@ -71,7 +51,7 @@ void bench_table1(engine::Device& device, const BenchOptions& options, const Row
             const auto play = [&](passes::Frame& frame, auto after) {
                 for (uint32_t f = 0; f <= options.repeats; ++f) {
                     frame.move_to(table.at(f * step));
-                    frame.render(table.camera);
+                    frame.render(camera);
                     if (f > 0) after();
                 }
                 return read_image(device, frame, {});
