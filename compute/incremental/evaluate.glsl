@@ -23,6 +23,8 @@ void look(inout Evaluation e, View view, vec3 d, float r, uint height, uint wher
     e.reach = max(e.reach, length);
 }
 
+BshShape shape() { return BshShape(push.leaves, push.blocks); }
+
 // What the nodes of a block and its owner have come, and whether they did since the last frame.
 struct Shift {
     float way;
@@ -39,7 +41,7 @@ Shift shift_of(uint block) {
     shift.own = now != 0u && own.version == now;
     shift.any = shift.own;
     if (block == push.blocks) return shift;
-    const Way above = ways.at[bsh_owner_of(block, push.leaves, push.blocks) >> bsh_arity_log2];
+    const Way above = ways.at[bsh_owner_of(block, shape()) >> bsh_arity_log2];
     shift.way += way_length(above, q);
     shift.any = shift.any || (now != 0u && above.version == now);
     return shift;
@@ -47,18 +49,18 @@ Shift shift_of(uint block) {
 
 Evaluation evaluate(uint block, View view) {
     Evaluation e = Evaluation(0u, true, 1e30f, 0.0f);
-    const uint height = bsh_height(8u * block, push.leaves, push.blocks);
+    const uint height = bsh_height(bsh_arity * block, shape());
     if (block != push.blocks) {  // the owner, which sits in the block above
-        const uint owner = bsh_owner_of(block, push.leaves, push.blocks);
-        const Sphere s = bsh_decode(push.frames.at[owner >> 3], push.spheres.at[owner]);
+        const uint owner = bsh_owner_of(block, shape());
+        const Sphere s = bsh_decode(push.frames.at[owner >> bsh_arity_log2], push.spheres.at[owner]);
         const uint where = classify(view, s, height + 1u, push.epsilon, push.map_size);
         look(e, view, s.center - view.position, s.radius, height + 1u, where);
         e.open = where == node_view_open;
     }
     if (!e.open) return e;
     const vec4 frame = push.frames.at[block];
-    for (uint i = 0u; i < 8u; ++i) {
-        const uvec2 code = push.spheres.at[8u * block + i];
+    for (uint i = 0u; i < bsh_arity; ++i) {
+        const uvec2 code = push.spheres.at[bsh_arity * block + i];
         if (bsh_is_absent(code)) continue;
         const Sphere s = bsh_decode(frame, code);
         const uint where = classify(view, s, height, push.epsilon, push.map_size);

@@ -14,7 +14,8 @@ constexpr uint64_t carried_words = sizeof(CarriedState) / sizeof(uint);
 
 }  // namespace
 
-BoundsTravel::BoundsTravel(engine::Device& device) : device_(device), shift_(device, compute_kernels, "incremental/shift") {}
+BoundsTravel::BoundsTravel(engine::Device& device, uint arity)
+    : device_(device), shift_(device, compute_kernels, "incremental/shift", bsh_constants(arity)) {}
 
 void BoundsTravel::record(engine::Recorder& recorder, const Bsh& tree) {
     if (tree.empty() || tree.bounds_version() == seen_) return;
@@ -41,7 +42,7 @@ void BoundsTravel::record(engine::Recorder& recorder, const Bsh& tree) {
 
 CarriedCut::CarriedCut(engine::Device& device, AppendMode mode, uint64_t capacity, uint32_t first_view, uint32_t views,
                        const engine::Constants& constants)
-    : first_view_(first_view), views_(views), lists_(device, mode, capacity, capacity), restart_(device, compute_kernels, "incremental/restart"),
+    : arity_(bsh_arity_of(constants)), first_view_(first_view), views_(views), lists_(device, mode, capacity, capacity), restart_(device, compute_kernels, "incremental/restart"),
       travel_(device, compute_kernels, "incremental/travel"), place_(device, compute_kernels, "incremental/place"),
       due_kernel_(device, compute_kernels, "incremental/due", constants), update_(device, compute_kernels, "incremental/update", constants),
       open_(device, compute_kernels, "incremental/open", constants), dues_(device, "lists", "dues", capacity),
@@ -74,7 +75,8 @@ Ref<CarriedRefs> CarriedCut::memory(engine::Recorder& recorder, const BoundsTrav
 }
 
 void CarriedCut::record(engine::Recorder& recorder, const ManyLodsInputs& in, const CarrySettings& settings, const BoundsTravel* bounds) {
-    assert(in.first_view == first_view_ && in.limit == views_ && first_view_ + views_ <= cut_max_views && in.tree.blocks() < cut_max_blocks);
+    assert(in.first_view == first_view_ && in.limit == views_ && first_view_ + views_ <= cut_max_views && in.tree.blocks() < cut_max_blocks &&
+           in.tree.arity() == arity_);
     if (in.tree.empty()) {
         lists_.begin(recorder, due_kernel_, in.view_count, 0, 0);
         lists_.end(recorder);
@@ -109,14 +111,14 @@ void CarriedCut::record(engine::Recorder& recorder, const ManyLodsInputs& in, co
                                             .capacity = uint(lists_.kept_capacity()), .close = close}, 1);
     };
     lists_.begin(recorder, due_kernel_, state_words_, 0, uint32_t(lists_.kept_capacity()), 0);
-    lists_.step(recorder, due_kernel_, bsh_arity + 1, push);
-    lists_.step(recorder, update_, bsh_arity + 1, push);
+    lists_.step(recorder, due_kernel_, arity_ + 1, push);
+    lists_.step(recorder, update_, arity_ + 1, push);
     place(0);
     const uint32_t levels = in.tree.levels();
     const uint32_t steps = settings.edges > 0 && !from_roots ? std::min(settings.edges, levels) : levels;
     for (uint32_t step = 1; step <= steps; ++step) {
         if (step == steps && steps < levels) flags |= carry_last;
-        lists_.step(recorder, open_, bsh_arity + 1, push);
+        lists_.step(recorder, open_, arity_ + 1, push);
     }
     place(1);
     lists_.end(recorder);

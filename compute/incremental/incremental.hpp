@@ -10,7 +10,7 @@ namespace myriad::compute {
 // of the frame before. 144 bytes a block read, 80 written where it changed.
 class BoundsTravel {
 public:
-    explicit BoundsTravel(engine::Device& device);
+    explicit BoundsTravel(engine::Device& device, uint arity = bsh_arity_default);
 
     // In every frame, before the cuts that are carried through this tree. Records nothing where the tree was not refitted.
     void record(engine::Recorder& recorder, const Bsh& tree);
@@ -32,7 +32,7 @@ private:
 
 // What a frame did to a carried cut; read after the submission.
 struct CarryReport {
-    AppendReport lists;                    // `processed` counts node-views evaluated, nine an item, `kept` is the length of the list
+    AppendReport lists;                    // `processed` counts node-views evaluated, a block's and its owner an item, `kept` is the length of the list
     uint64_t cut = 0;                      // node-views in the cuts, culled ones included
     uint64_t due = 0, dropped = 0, made = 0, holes = 0;  // items
     uint64_t changed = 0;                  // views of which the frame shows something else than the last
@@ -70,6 +70,7 @@ public:
 private:
     Ref<CarriedRefs> memory(engine::Recorder& recorder, const BoundsTravel* bounds);
 
+    uint arity_;
     uint32_t first_view_, views_;
     bool started_ = false;
     uint64_t bounds_version_ = 0;  // that the cut was brought up to date with

@@ -7,13 +7,13 @@ namespace myriad::compute {
 namespace {
 
 uint where(const HostTree& tree, const View& view, uint slot, float epsilon, uint map_size) {
-    return classify(view, tree.sphere(slot), bsh_height(slot, tree.leaves, tree.blocks), epsilon, map_size);
+    return classify(view, tree.sphere(slot), bsh_height(slot, tree), epsilon, map_size);
 }
 
 template <class Visit>
 void for_children(const HostTree& tree, uint slot, Visit visit) {
-    const uint block = bsh_block_of(slot, tree.leaves, tree.blocks);
-    for (uint child = 8 * block; child < 8 * block + 8; ++child)
+    const uint block = bsh_block_of(slot, tree);
+    for (uint child = tree.arity() * block; child < tree.arity() * (block + 1); ++child)
         if (!tree.absent(child)) visit(child);
 }
 

@@ -39,5 +39,5 @@ void main() {
         memory.dues.at[place] = due;
     }
     for (uint next = at.x; open != 0u; ++next, open &= open - 1u)
-        append_next(next, uvec2(bsh_block_of(8u * pair.x + findLSB(open), push.leaves, push.blocks), pair.y), push.lists);
+        append_next(next, uvec2(bsh_block_of(bsh_arity * pair.x + findLSB(open), shape()), pair.y), push.lists);
 }

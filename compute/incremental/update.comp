@@ -51,5 +51,5 @@ void main() {
         memory.codes.at[item] = cut_hole();
     }
     for (uint next = at.x; open != 0u; ++next, open &= open - 1u)
-        append_next(next, uvec2(bsh_block_of(8u * group.block + findLSB(open), push.leaves, push.blocks), group.view), push.lists);
+        append_next(next, uvec2(bsh_block_of(bsh_arity * group.block + findLSB(open), shape()), group.view), push.lists);
 }
