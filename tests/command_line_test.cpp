@@ -155,19 +155,18 @@ TEST_F(command_line, arities) {
     const std::string stats = other / "s.json", image = other / "a.exr";
     std::vector<std::vector<float>> images;
     std::vector<uint64_t> blocks;
-    for (const char* arity : {"2", "4", "8"})
-        for (const char* update : {"basic", "incremental"}) {
-            succeed({"render", "builtin:cornell", "--size", "64x48", "--samples", "13", "--vpls", "64", "-q", "-o", image, "--stats", stats, "--float", "--arity", arity,
-                     "--update", update});
-            const nlohmann::json json = nlohmann::json::parse(bytes_of(stats));
-            EXPECT_EQ(json["settings"]["arity"], std::stoi(arity));
-            images.push_back(read_exr(image).find("R")->values);
-            blocks.push_back(json["scene"]["bsh_blocks"]);
-        }
-    EXPECT_EQ(blocks, (std::vector<uint64_t>{8191, 8191, 2731, 2731, 1171, 1171}));
-    for (size_t i = 0; i < images.size(); i += 2) EXPECT_TRUE(images[i] == images[i + 1]) << i;
+    for (const auto& [arity, update] : {std::pair("2", "basic"), {"2", "incremental"}, {"8", "basic"}}) {
+        succeed({"render", "builtin:cornell", "--size", "64x48", "--samples", "13", "--vpls", "64", "-q", "-o", image, "--stats", stats, "--float", "--arity", arity,
+                 "--update", update});
+        const nlohmann::json json = nlohmann::json::parse(bytes_of(stats));
+        EXPECT_EQ(json["settings"]["arity"], std::stoi(arity));
+        images.push_back(read_exr(image).find("R")->values);
+        blocks.push_back(json["scene"]["bsh_blocks"]);
+    }
+    EXPECT_EQ(blocks, (std::vector<uint64_t>{8191, 8191, 1171}));
+    EXPECT_TRUE(images[0] == images[1]);
     const auto mean = [](const std::vector<float>& values) { return std::accumulate(values.begin(), values.end(), 0.0) / double(values.size()); };
-    for (const auto& other_arity : {images[0], images[2]}) EXPECT_NEAR(mean(other_arity) / mean(images[4]), 1, 0.03);
+    EXPECT_NEAR(mean(images[0]) / mean(images[2]), 1, 0.03);
 }
 
 TEST_F(command_line, outputs_that_cannot_be_written_are_told_at_once) {

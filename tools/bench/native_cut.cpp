@@ -1,6 +1,7 @@
 #include "tools/bench/native_cut.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <thread>
 
 #include "compute/manylods/manylods_io.h"
@@ -16,7 +17,7 @@ inline uint open_block(const NativeTree& tree, uint block, const View& view, flo
     const uvec2* codes = &tree.spheres[size_t(block) * arity];
     float x[arity], y[arity], z[arity], r[arity];
     uint present[arity];
-    for (uint i = 0; i < arity; ++i) {
+    for (int i = 0; i < int(arity); ++i) {
         x[i] = frame.x + frame.w * float(int(codes[i].x & 0xffffu)) - view.position.x;
         y[i] = frame.y + frame.w * float(int(codes[i].x >> 16)) - view.position.y;
         z[i] = frame.z + frame.w * float(int(codes[i].y & 0xffffu)) - view.position.z;
@@ -25,9 +26,9 @@ inline uint open_block(const NativeTree& tree, uint block, const View& view, flo
     }
     const vec3 n = view.direction;
     const bool cone = view.cos_phi != 0;
-    const uint height = bsh_height(arity * block, tree);
+    const uint height = bsh_height(arity * block, {tree.leaves, tree.blocks, uint(std::countr_zero(arity))});  // a constant's division is none
     uint outside[arity], small[arity];
-    for (uint i = 0; i < arity; ++i) {
+    for (int i = 0; i < int(arity); ++i) {
         const float l2 = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
         const float a = n.x * x[i] + n.y * y[i] + n.z * z[i];
         float distance = -a * view.sin_phi;
@@ -45,7 +46,7 @@ inline uint open_block(const NativeTree& tree, uint block, const View& view, flo
     }
     const uint leaf = height == 0 ? ~0u : 0u;
     uint found = 0;
-    for (uint i = 0; i < arity; ++i) {
+    for (int i = 0; i < int(arity); ++i) {
         const uint culled = present[i] & outside[i];
         const uint drawn = present[i] & ~outside[i] & (small[i] | leaf);
         const uint open = present[i] & ~outside[i] & ~(small[i] | leaf);
