@@ -56,7 +56,7 @@ Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::T
     : device_(device), settings_(settings), recorder_(device), geometry_(step("uploading triangles", [&] { return Geometry(device, triangles, data); })),
       lights_(step("listing lights", [&] { return LightTable(device, scene, triangles, data); })),
       bvh_(step("building the ray tree", [&] { return derived.bvh(device, compute::BvhQuality::quick, geometry_.opacity()); })),
-      gbuffer_(device, settings.width, settings.height, bvh_.constants(), settings.brdf == Brdf::gltf && data.glossy), compose_(device, settings.width, settings.height),
+      gbuffer_(device, settings.width, settings.height, bvh_.constants(), settings.brdf == Brdf::gltf && data.glossy, settings.primary == Primary::rays), compose_(device, settings.width, settings.height),
       exhausted_(device, "frame", "exhausted walks", 1), host_words_(device, "frame", "frame words", 7, engine::Location::host) {
     background_ = scene.background;
     const compute::WorldTriangles& world = derived.world();
@@ -75,6 +75,11 @@ Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::T
     if (DirectPass::needed(lights_)) direct_.emplace(device, settings.width, settings.height, 0, bvh_.constants({{glossy_constant, size_.glossy}}));
     if (scene.environment) environment_.emplace(device, scene, triangles.lo, triangles.hi, settings.maps.map_size);
     if (!triangles.triangles.empty()) make_lighting(scene, derived, triangles);
+    if (settings.primary == Primary::points) {
+        make_tree(derived);
+        points_.emplace(device, PointsSettings{.pixels = settings.primary_pixels, .append = settings.maps.append}, *tree_, geometry_, derived.world(),
+                        settings.width, settings.height, bvh_.constants());
+    }
     step("compiling kernels", [&] { recorder_.warm_up(); });
     if (vpl_) step("finding where light goes", [&] { prepare_paths(); });
     for (auto* gathering : {&indirect_, &natural_})
@@ -92,11 +97,7 @@ void Frame::make_lighting(const scenes::Scene& scene, compute::Derived& derived,
         vpl_->sure_paths(lights_, settings.bounces);  // throws when not one path fits
     }
     if (!vpl_ && far_lights == 0) return;
-    if (settings.visibility == Visibility::manylods) {
-        tree_.emplace(step("sampling the surface", [&] { return derived.bsh(device_, settings.log2_samples, settings.seed, settings.maps.arity); }));
-        size_.samples = tree_->leaves();
-        size_.bsh_blocks = tree_->blocks();
-    }
+    if (settings.visibility == Visibility::manylods) make_tree(derived);
     compute::SurfaceSampling sampling;
     if (settings.visibility == Visibility::ism) {
         sampling = step("sampling the surface", [&] { return derived.samples(settings.log2_samples, settings.seed); });
@@ -106,6 +107,14 @@ void Frame::make_lighting(const scenes::Scene& scene, compute::Derived& derived,
     const IsmScene points{derived.world(), sampling, std::max({extent.x, extent.y, extent.z})};
     if (vpl_) indirect_.emplace(make_gathering(settings.vpls, false, derived.world(), points));
     if (far_lights > 0) natural_.emplace(make_gathering(far_lights, true, derived.world(), points));
+}
+
+// Once, for who comes first.
+void Frame::make_tree(compute::Derived& derived) {
+    if (tree_) return;
+    tree_.emplace(step("sampling the surface", [&] { return derived.bsh(device_, settings_.log2_samples, settings_.seed, settings_.maps.arity); }));
+    size_.samples = tree_->leaves();
+    size_.bsh_blocks = tree_->blocks();
 }
 
 Gathering Frame::make_gathering(uint32_t lights, bool far, const compute::WorldTriangles& world, const IsmScene& points) {
@@ -190,11 +199,7 @@ void Frame::render(const scenes::Camera& camera) {
 
 void Frame::render_once(const scenes::Camera& camera) {
     const float pixel_angle = 2 * std::tan(camera.yfov / 2) / float(settings_.height);
-    {
-        auto scope = recorder_.scope("gbuffer");
-        gbuffer_.record(recorder_, geometry_, bvh_, camera, background_);
-        if (environment_) environment_->record_background(recorder_, gbuffer(), camera);
-    }
+    see(camera);
     if (direct_) {
         auto scope = recorder_.scope("direct");
         direct_->record(recorder_, gbuffer(), bvh_, lights_);
@@ -213,6 +218,20 @@ void Frame::render_once(const scenes::Camera& camera) {
     read_back_words();
     if (vpl_) counters_.vpls = host_words_.span()[0];
     count_maps();
+}
+
+// What the camera sees, and what is behind everything.
+void Frame::see(const scenes::Camera& camera) {
+    while (points_) {
+        points_->record(recorder_, camera_push(camera, settings_.width, settings_.height), gbuffer_.hits());
+        recorder_.submit_and_wait();
+        if (points_->accept()) break;
+    }
+    auto scope = recorder_.scope("gbuffer");
+    if (points_) gbuffer_.record_seen(recorder_, geometry_, camera, background_);
+    else gbuffer_.record(recorder_, geometry_, bvh_, camera, background_);
+    if (environment_) environment_->record_background(recorder_, gbuffer(), camera);
+    if (points_) counters_.points = points_->take_counters();
 }
 
 void Frame::count_maps() {

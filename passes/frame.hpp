@@ -17,6 +17,7 @@
 #include "passes/gbuffer/gbuffer.hpp"
 #include "passes/geometry/geometry.hpp"
 #include "passes/geometry/lights.hpp"
+#include "passes/points/points.hpp"
 #include "passes/tonemap/tonemap.hpp"
 #include "passes/vpl/vpl.hpp"
 
@@ -28,6 +29,12 @@ enum class Visibility {
     ism,       // imperfect shadow maps
     rays,      // exact: the same-VPL reference
     none,      // every VPL reaches every receiver
+};
+
+// How what the camera sees is found.
+enum class Primary {
+    rays,    // exact
+    points,  // drawn from the camera's own cut through the tree of samples
 };
 
 // How what the camera sees reflects.
@@ -43,6 +50,8 @@ struct FrameSettings {
     uint32_t seed = 1;
     uint32_t subset = 256;        // VPLs that each pixel gathers, about; 0: all
     bool filter = true;
+    Primary primary = Primary::rays;
+    float primary_pixels = 1;     // points: the largest diameter of a node that is no leaf
     Brdf brdf = Brdf::gltf;
     Visibility visibility = Visibility::manylods;
     MapSettings maps;
@@ -76,6 +85,7 @@ struct FrameCounters {
     // Where the scene moves, of the sphere tree (BshQuality): its extent against what it was when built, and its overlap.
     std::optional<double> tree_growth, tree_overlap;
     std::optional<MapCounters> maps;    // visibility by maps
+    std::optional<PointsCounters> points;  // primary: points
 };
 
 class Frame {
@@ -123,9 +133,11 @@ private:
     Frame(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles, const GeometryData& data, compute::Derived derived,
           const FrameSettings& settings);
     void make_lighting(const scenes::Scene& scene, compute::Derived& derived, const scenes::Triangles& triangles);
+    void make_tree(compute::Derived& derived);
     Gathering make_gathering(uint32_t lights, bool far, const compute::WorldTriangles& world, const IsmScene& points);
     MapScene map_scene() const { return {.tree = tree(), .geometry = &geometry_}; }
     void prepare_paths();
+    void see(const scenes::Camera& camera);
     void refit_tree();
     void follow_tree();
     void take_quality();
@@ -154,6 +166,7 @@ private:
     std::optional<VplPass> vpl_;
     std::optional<EnvironmentPass> environment_;
     std::optional<compute::Bsh> tree_;
+    std::optional<PointsPass> points_;
     std::optional<Gathering> indirect_, natural_;  // of VPLs; of the environment's lights
     ComposePass compose_;
     std::optional<TonemapPass> tonemap_;

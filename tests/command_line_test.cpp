@@ -43,7 +43,7 @@ protected:
 TEST_F(command_line, help_names_every_option) {
     const std::map<std::string, Arguments> options = {
         {"", {"render", "convert", "compare", "bench", "info", "--version"}},
-        {"render", {"SCENE",     "--output",   "--png",  "--size",    "--camera",  "--seed",    "--visibility", "--append",
+        {"render", {"SCENE",     "--output",   "--png",  "--size",    "--camera",  "--seed",    "--primary", "--primary-pixels", "--visibility", "--append",
                     "--vpls",    "--bounces",  "--map-size",          "--epsilon", "--samples", "--gather",     "--filter",
                     "--vpl-bound", "--bias",   "--exposure",          "--memory-limit",         "--stats",      "--trace",
                     "--aov",     "--cache",  "--instances",         "--sky",     "--device",   "--repeat", "--float", "--animation", "--time", "--frames", "--fps", "--loop", "--camera-path", "--env", "--env-lights", "--env-rotation", "--env-strength", "--quiet",   "1:1",       "builtin:cornell", "W/sr"}},
@@ -112,6 +112,30 @@ TEST_F(command_line, bad_scenes_and_cameras) {
     refuse(2, render("two\nlines.glb"), "two lines.glb");
     refuse(2, tiny + Arguments{"-o", exr, "--camera", "behind"}, "behind");
     refuse(2, tiny + Arguments{"-o", exr, "--camera", "99"}, "99");
+}
+
+TEST_F(command_line, points_in_place_of_rays) {
+    refuse(2, tiny + Arguments{"-o", exr, "--primary", "triangles"}, "rays, points");
+    refuse(2, tiny + Arguments{"-o", exr, "--primary-pixels", "2"}, "--primary-pixels is about points");
+    refuse(2, tiny + Arguments{"-o", exr, "--primary", "rays", "--primary-pixels", "2"}, "give --primary points");
+    refuse(2, tiny + Arguments{"-o", exr, "--primary", "points", "--primary-pixels", "0"}, "--primary-pixels '0'");
+    const TempFolder other;
+    const std::string stats = other / "s.json";
+    uint64_t last_views = ~0ull;
+    for (const char* c : {"1", "4", "1000"}) {
+        succeed(Arguments{"render", "builtin:cornell", "--size", "64x48", "--vpls", "16", "--visibility", "rays", "--samples", "14", "-q", "-o", other / "a.exr", "--stats", stats,
+                          "--primary", "points", "--primary-pixels", c});
+        const nlohmann::json json = nlohmann::json::parse(bytes_of(stats)), points = json["frames"][0]["counters"]["points"];
+        EXPECT_EQ(json["settings"]["primary"], "points");
+        EXPECT_EQ(json["settings"]["primary_pixels"], std::stoi(c));
+        EXPECT_EQ(json["scene"]["samples"], 1 << 14);
+        EXPECT_GE(points["node_views"], points["cut"]);
+        EXPECT_GE(points["cut"], points["drawn"]);
+        EXPECT_LT(points["node_views"], last_views);
+        last_views = points["node_views"];
+    }
+    succeed(Arguments{"render", "builtin:cornell", "--size", "64x48", "--vpls", "16", "--visibility", "rays", "-q", "-o", other / "a.exr", "--stats", stats});
+    EXPECT_FALSE(nlohmann::json::parse(bytes_of(stats))["frames"][0]["counters"].contains("points"));
 }
 
 TEST_F(command_line, environments) {
@@ -422,6 +446,22 @@ TEST_F(command_line, bench_table_1) {
     }
     const Arguments all = {"brute", "ism", "basic", "incremental", "incremental", "lazy"};
     EXPECT_EQ(techniques, (std::map<double, Arguments>{{1, all}, {10, all}}));
+}
+
+// What Table 2 has, for so many points and for twice as many; rays once.
+TEST_F(command_line, bench_table_2) {
+    succeed({"bench", "manylods-table2", "--scene", "builtin:cornell", "--samples", "8", "--repeat", "1", "--json", folder / "rows.json"});
+    std::map<uint64_t, Arguments> techniques;
+    for (const auto& row : rows_of(folder / "rows.json")) {
+        EXPECT_EQ(row["bench"], "manylods-table2");
+        EXPECT_EQ(row["views"], 1) << row;
+        EXPECT_EQ(row["ms"]["n"], 1) << row;
+        techniques[row["settings"].value("samples", 0)].push_back(row["technique"]);
+        if (row["technique"] == "points") { EXPECT_TRUE(row["error"]["another_depth"].is_number() && row["stages"]["cut"].is_number()) << row; }
+        if (row["technique"] == "update") { EXPECT_GT(row["counters"]["times_copy"], 0) << row; }
+    }
+    const Arguments each = {"build", "update", "copy", "points", "points", "points"};
+    EXPECT_EQ(techniques, (std::map<uint64_t, Arguments>{{0, {"poly"}}, {256, each}, {512, each}}));
 }
 
 // A row a technique, a line of the table a frame, and a plot.

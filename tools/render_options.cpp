@@ -57,6 +57,15 @@ void add_environment(CLI::App& command, RenderOptions::Environment& e) {
     });
 }
 
+void add_primary(CLI::App& command, RenderOptions& o) {
+    add_choice(command, "--primary", o.frame.primary, primaries(),
+               "how what the camera sees is found: a ray a pixel, exact; or points, drawn from the camera's\ncut through the tree of --samples");
+    add_parsed(command, "--primary-pixels", "C", show_number(o.frame.primary_pixels), "of points: largest diameter, in pixels, of a node that is drawn and not opened; leaves are\n"
+               "drawn as large as they are", [&o](const std::string& text) {
+        o.primary_pixels = o.frame.primary_pixels = parse_number("--primary-pixels", text, 1e-3f, 1e6f);
+    });
+}
+
 void add_technique(CLI::App& command, passes::FrameSettings& s) {
     add_choice(command, "--visibility", s.visibility, visibilities(),
                "whether a VPL sees a pixel: by its map, drawn from its cut through the scene\n(manylods), of all triangles (brute) or of few points (ism: imperfect shadow maps); by exact rays, the reference; or taken for granted");
@@ -104,6 +113,12 @@ const char* const footer =
 const Choices<passes::Visibility>& visibilities() {
     using passes::Visibility;
     static const Choices<Visibility> choices = {{"manylods", Visibility::manylods}, {"brute", Visibility::brute}, {"ism", Visibility::ism}, {"rays", Visibility::rays}, {"none", Visibility::none}};
+    return choices;
+}
+
+const Choices<passes::Primary>& primaries() {
+    using passes::Primary;
+    static const Choices<Primary> choices = {{"rays", Primary::rays}, {"points", Primary::points}};
     return choices;
 }
 
@@ -172,6 +187,7 @@ std::shared_ptr<RenderOptions> add_render_options(CLI::App& command) {
     add_environment(command, o.environment);
     add_choice(command, "--instances", o.instances, sharings(),
                "meshes with several instances: stored once where that saves 16 MiB and a quarter of\nthe scene, wherever it can be, or written out; memory and time differ, the image does not");
+    add_primary(command, o);
     add_technique(command, o.frame);
     add_parsed(command, "--memory-limit", "MiB", "", "for all buffers on the device; unless given, what it has", [&o](const std::string& text) {
         o.device.memory_limit = parse_whole("--memory-limit", text, 1, uint64_t(1) << 30) << 20;
@@ -202,6 +218,8 @@ void check_outputs(const RenderOptions& o) {
     if (o.frames && o.repeat > 1) throw InputError("--frames renders a moment each, --repeat one moment again and again; give one of them");
     if (!o.camera_path.empty() && !o.camera.empty()) throw InputError("--camera and --camera-path both say where to look from; give one of them");
     if (!o.camera_path.empty() && !o.time && !o.frames) throw InputError("--camera-path is a way in time; say which moment with --time, or which with --frames");
+    if (o.primary_pixels && o.frame.primary != passes::Primary::points)
+        throw InputError("--primary-pixels is about points, and rays have no size; give --primary points with it");
     const RenderOptions::Environment& e = o.environment;
     if (e.file.empty())
         for (const auto& [given, name] : {std::pair(e.lights.has_value(), "--env-lights"), {e.rotation.has_value(), "--env-rotation"},

@@ -26,6 +26,7 @@ struct RenderOptions {
     std::string exr, png, stats, trace;  // files; empty: not wanted
     std::vector<std::string> layers;     // of the EXR beside the beauty: some of layer_names()
     std::optional<float> exposure;       // absent: auto
+    std::optional<float> primary_pixels; // absent: what frame says
     passes::FrameSettings frame;
     engine::DeviceOptions device;
     scenes::Sharing instances = scenes::Sharing::automatic;
@@ -43,6 +44,7 @@ struct RenderOptions {
 };
 
 const Choices<passes::Visibility>& visibilities();
+const Choices<passes::Primary>& primaries();
 const Choices<passes::Brdf>& brdfs();
 const Choices<compute::AppendMode>& append_modes();
 const Choices<uint32_t>& arities();

@@ -54,6 +54,9 @@ ordered_json counters_json(const FrameRun& frame) {
         counters["batches"] = maps->batches;
         counters["redone"] = maps->redone;
     }
+    if (const auto& points = frame.counters.points)
+        counters["points"] = {{"node_views", points->node_views}, {"cut", points->cut}, {"cut_groups", points->groups}, {"drawn", points->drawn},
+                              {"list_capacity", points->list_capacity}, {"list_peak", points->list_peak}, {"redone", points->redone}};
     counters["peak_bytes"] = frame.peak_bytes;
     return counters;
 }
@@ -81,6 +84,9 @@ std::string counters_text(const FrameRun& frame) {
                        static_cast<unsigned long long>(maps->node_views), static_cast<unsigned long long>(maps->cut),
                        static_cast<unsigned long long>(maps->list_peak), static_cast<unsigned long long>(maps->list_capacity), maps->batches,
                        maps->redone);
+    if (const auto& points = frame.counters.points)
+        text += format(", of the camera %llu node-views tested, %llu in its cut, %llu points drawn", static_cast<unsigned long long>(points->node_views),
+                       static_cast<unsigned long long>(points->cut), static_cast<unsigned long long>(points->drawn));
     if (text.starts_with(", ")) text.erase(0, 2);
     return text.empty() ? text : text + "\n";
 }
@@ -126,6 +132,10 @@ std::vector<PassSum> median_passes(const std::vector<FrameRun>& frames) {
 
 ordered_json settings_json(const passes::FrameSettings& s, float vpl_bound, bool environment) {
     ordered_json json = {{"width", s.width}, {"height", s.height}, {"seed", s.seed}, {"brdf", choice_name(brdfs(), s.brdf)}, {"vpls", s.vpls}};
+    if (s.primary == passes::Primary::points) {
+        json["primary"] = choice_name(primaries(), s.primary), json["primary_pixels"] = shortest(s.primary_pixels);
+        json["append"] = choice_name(append_modes(), s.maps.append), json["log2_samples"] = s.log2_samples;
+    }
     if (s.vpls == 0 && !environment) return json;
     if (s.vpls > 0) json["bounces"] = s.bounces;
     json["visibility"] = choice_name(visibilities(), s.visibility);

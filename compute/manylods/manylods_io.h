@@ -7,6 +7,7 @@
 #include "compute/manylods/cut_io.h"
 #include "compute/views/paraboloid.h"
 #include "compute/views/parallel.h"
+#include "compute/views/pinhole.h"
 
 MYRIAD_BEGIN
 // "manylods/seed" and "manylods/open".
@@ -40,6 +41,11 @@ const uint node_view_culled = 2u;
 MYRIAD_FN uint classify(View view, Sphere sphere, uint height, float epsilon, uint map_size) {
     if (is_parallel(view)) return height == 0u || parallel_fits(view, sphere.radius, map_size, epsilon) ? node_view_drawn : node_view_open;
     const vec3 d = sphere.center - view.position;
+    if (is_pinhole(view)) {
+        const Pinhole p = pinhole_of(view, map_size);
+        if (pinhole_outside(p, d, cull_radius(d, sphere.radius, height))) return node_view_culled;
+        return height == 0u || pinhole_fits(p, d, sphere.radius, epsilon) ? node_view_drawn : node_view_open;
+    }
     if (outside_frustum(view, d, cull_radius(d, sphere.radius, height))) return node_view_culled;
     return height == 0u || fits(d, sphere.radius, map_size, epsilon) ? node_view_drawn : node_view_open;
 }

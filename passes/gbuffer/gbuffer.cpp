@@ -28,19 +28,27 @@ GBufferRef GBuffer::read(engine::Recorder& recorder) const {
             .gloss = glossy() ? recorder.read(gloss) : Glosses{}, .width = width, .height = height};
 }
 
-GBufferPass::GBufferPass(engine::Device& device, uint32_t width, uint32_t height, const engine::Constants& variant, bool glossy)
-    : trace_(device, passes_kernels, "gbuffer/trace", variant), shade_(device, passes_kernels, "gbuffer/shade", variant),
+GBufferPass::GBufferPass(engine::Device& device, uint32_t width, uint32_t height, const engine::Constants& variant, bool glossy, bool traces)
+    : shade_(device, passes_kernels, "gbuffer/shade", variant),
       gbuffer_(device, width, height, glossy), hits_(device, "images", "primary hits", gbuffer_.pixels()),
-      exhausted_(device, "images", "primary hits exhausted", 1) {}
+      exhausted_(device, "images", "primary hits exhausted", 1) {
+    if (traces) trace_.emplace(device, passes_kernels, "gbuffer/trace", variant);
+}
 
 void GBufferPass::record(engine::Recorder& recorder, const Geometry& geometry, const compute::Bvh& bvh, const scenes::Camera& camera,
                          const vec3& background) {
     const CameraPush push = camera_push(camera, gbuffer_.width, gbuffer_.height);
     recorder.fill(exhausted_, 0);
-    recorder.dispatch(trace_,
+    recorder.dispatch(*trace_,
                       GBufferTracePush{.bvh = bvh.read(recorder), .camera = push, .hits = recorder.write(hits_),
                                        .exhausted = recorder.write(exhausted_), .width = gbuffer_.width, .height = gbuffer_.height},
                       gbuffer_.pixels());
+    record_seen(recorder, geometry, camera, background);
+}
+
+void GBufferPass::record_seen(engine::Recorder& recorder, const Geometry& geometry, const scenes::Camera& camera, const vec3& background) {
+    const CameraPush push = camera_push(camera, gbuffer_.width, gbuffer_.height);
+    if (!trace_) recorder.fill(exhausted_, 0);
     recorder.dispatch(shade_,
                       GBufferShadePush{.geometry = geometry.read(recorder),
                                        .hits = recorder.read(hits_),

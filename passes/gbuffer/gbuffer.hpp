@@ -1,6 +1,8 @@
 // What the camera sees, per pixel; see README.md.
 #pragma once
 
+#include <optional>
+
 #include "compute/raytrace/bvh.hpp"
 #include "passes/gbuffer/gbuffer_io.h"
 #include "passes/geometry/geometry.hpp"
@@ -27,19 +29,24 @@ struct GBuffer {
 
 class GBufferPass {
 public:
-    // `variant`: specialisation constants that the scene needs of kernels, the same in all passes (Frame).
-    GBufferPass(engine::Device& device, uint32_t width, uint32_t height, const engine::Constants& variant = {}, bool glossy = false);
+    // `variant`: specialisation constants that the scene needs of kernels, the same in all passes (Frame). `traces`: finds itself what is seen.
+    GBufferPass(engine::Device& device, uint32_t width, uint32_t height, const engine::Constants& variant = {}, bool glossy = false, bool traces = true);
 
     // `background`: radiance that pixels see where their rays leave the scene.
     void record(engine::Recorder& recorder, const Geometry& geometry, const compute::Bvh& bvh, const scenes::Camera& camera,
                 const vec3& background = vec3(0));
+
+    // For one that does not trace: what is seen has been written into hits().
+    void record_seen(engine::Recorder& recorder, const Geometry& geometry, const scenes::Camera& camera, const vec3& background = vec3(0));
+    const engine::Array<RayHitRecord>& hits() const { return hits_; }
 
     const GBuffer& gbuffer() const { return gbuffer_; }
     // [0] != 0: a ray's walk met the device's limit on loops (trace.glsl), and the result cannot be trusted.
     const engine::Array<uint>& exhausted() const { return exhausted_; }
 
 private:
-    engine::Program trace_, shade_;
+    std::optional<engine::Program> trace_;
+    engine::Program shade_;
     GBuffer gbuffer_;
     engine::Array<RayHitRecord> hits_;
     engine::Array<uint> exhausted_;

@@ -37,6 +37,7 @@ const std::vector<Bench>& benches() {
     static const std::vector<Bench> all = {
         {"manylods", "cut and splat of many VPL views: the device's lists and walks against native ones", bench_manylods, {"--arity"}},
         {"manylods-table1", "maps of a moving light's VPLs: brute, ISM, basic, incremental and lazy cuts, with their errors", bench_table1, {"--arity"}},
+        {"manylods-table2", "the tree's build and update, and one view of the scene: rays, and points at c = 1, 2 and 4 pixels", bench_table2},
         {"manylods-fig8", "cuts over a clip, frame by frame: basic, incremental and lazy", bench_fig8,
          {"--animation", "--frames", "--csv", "--plot", "--arity"}},
         {"manylods-ism", "imperfect shadow maps with the points a map that take ManyLoDs' time, diffuse and glossy", bench_equal_time, {"--images", "--arity"}},

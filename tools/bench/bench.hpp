@@ -67,6 +67,8 @@ const std::vector<Bench>& benches();
 void bench_manylods(engine::Device& device, const BenchOptions& options, const RowSink& sink);
 // bench/table1.cpp
 void bench_table1(engine::Device& device, const BenchOptions& options, const RowSink& sink);
+// bench/table2.cpp
+void bench_table2(engine::Device& device, const BenchOptions& options, const RowSink& sink);
 // bench/fig8.cpp
 void bench_fig8(engine::Device& device, const BenchOptions& options, const RowSink& sink);
 // bench/arity.cpp
