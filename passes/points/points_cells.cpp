@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <numeric>
 #include <tuple>
 
@@ -14,43 +15,63 @@ namespace {
 
 constexpr size_t grain = 1 << 12;
 
-// The middles of nodes, level by level from the leaves, as of a tree of arity 8: which leaf a walk finds depends on the order alone.
-std::vector<std::vector<vec3>> middles_of(const compute::WorldTriangles& world, std::span<const SurfaceSample> samples) {
-    std::vector<std::vector<vec3>> levels;
+// Boxes around nodes' samples, level by level from the leaves, as of a tree of arity 8: what is nearest does not depend on that.
+struct Box {
+    vec3 low, high;
+
+    float away2(const vec3& at) const {
+        const vec3 d = max(max(low - at, at - high), vec3(0));
+        return dot(d, d);
+    }
+};
+using Levels = std::vector<std::vector<Box>>;
+Levels boxes_of(const compute::WorldTriangles& world, std::span<const SurfaceSample> samples) {
+    Levels levels;
     for (const compute::BshLevel& level : compute::bsh_levels(uint(samples.size()), bsh_most)) {
-        std::vector<vec3> middles(level.nodes);
+        std::vector<Box> boxes(level.nodes);
         engine::parallel_pieces(level.nodes, grain, [&](size_t begin, size_t end) {
             for (size_t i = begin; i < end; ++i) {
                 if (levels.empty()) {
                     const Corners c = world.corners(samples[i].triangle);
-                    middles[i] = bsh_position(c.p0, c.p1, c.p2, samples[i].u, samples[i].v);
+                    const vec3 at = bsh_position(c.p0, c.p1, c.p2, samples[i].u, samples[i].v);
+                    boxes[i] = {at, at};
                     continue;
                 }
-                const std::vector<vec3>& below = levels.back();
-                const size_t first = bsh_most * i, last = std::min(first + bsh_most, below.size());
-                vec3 sum(0);
-                for (size_t k = first; k < last; ++k) sum += below[k];
-                middles[i] = sum / float(last - first);
+                const std::vector<Box>& below = levels.back();
+                boxes[i] = below[bsh_most * i];
+                for (size_t k = bsh_most * i; k < std::min(bsh_most * (i + 1), below.size()); ++k)
+                    boxes[i] = {min(boxes[i].low, below[k].low), max(boxes[i].high, below[k].high)};
             }
         });
-        levels.push_back(std::move(middles));
+        levels.push_back(std::move(boxes));
     }
     return levels;
 }
 
-uint leaf_near(const std::vector<std::vector<vec3>>& levels, const vec3& at) {
-    size_t node = 0;
-    for (size_t level = levels.size() - 1; level-- > 0;) {
-        const size_t first = bsh_most * node, last = std::min(first + bsh_most, levels[level].size());
-        const auto away = [&](size_t k) {
-            const vec3 d = levels[level][k] - at;
-            return dot(d, d);
-        };
-        node = first;
-        for (size_t k = first + 1; k < last; ++k)
-            if (away(k) < away(node)) node = k;
+struct Nearest {
+    float away2 = std::numeric_limits<float>::infinity();
+    uint leaf = 0;
+};
+// The leaf nearest to `at` below a node, where it is nearer than what was found; nearer children first.
+void find_nearest(const Levels& levels, size_t level, size_t node, const vec3& at, Nearest& nearest) {
+    const std::vector<Box>& below = levels[level - 1];
+    const size_t first = bsh_most * node, count = std::min<size_t>(bsh_most, below.size() - first);
+    std::array<float, bsh_most> away2;
+    for (size_t k = 0; k < count; ++k) away2[k] = below[first + k].away2(at);
+    for (size_t left = count; left > 0; --left) {
+        size_t next = 0;
+        for (size_t k = 1; k < count; ++k)
+            if (away2[k] < away2[next]) next = k;
+        if (!(away2[next] < nearest.away2)) return;
+        if (level == 1) nearest = {away2[next], uint(first + next)};
+        else find_nearest(levels, level - 1, first + next, at, nearest);
+        away2[next] = std::numeric_limits<float>::infinity();
     }
-    return uint(node);
+}
+uint leaf_near(const Levels& levels, const vec3& at) {
+    Nearest nearest;
+    if (levels.size() > 1) find_nearest(levels, levels.size() - 1, 0, at, nearest);
+    return nearest.leaf;
 }
 
 struct Part {
@@ -81,7 +102,7 @@ uint pack(const uvec2& corner) { return corner.x | corner.y << 16; }
 }  // namespace
 
 PointsCells points_cells(const compute::WorldTriangles& world, std::span<const SurfaceSample> samples, float share) {
-    const auto levels = middles_of(world, samples);
+    const Levels levels = boxes_of(world, samples);
     struct Given {
         uint leaf;
         uvec4 cell;
@@ -99,20 +120,6 @@ PointsCells points_cells(const compute::WorldTriangles& world, std::span<const S
             cut(c, {{uvec2(0), uvec2(points_cell_steps, 0), uvec2(0, points_cell_steps)}}, area, 2 * double(share), visit);
         });
     });
-    if (getenv("POINTS_DEBUG")) {
-        const float R = 1.75f * std::sqrt(share / 3.14159f);
-        std::vector<float> far;
-        for (const auto& piece : given)
-            for (const Given& g : piece) {
-                const Corners at = world.corners(g.cell.x);
-                float f = 0;
-                for (uint code : {g.cell.y, g.cell.z, g.cell.w}) { const vec2 uv = points_corner(code); f = std::max(f, glm::length(bsh_position(at.p0, at.p1, at.p2, uv.x, uv.y) - levels[0][g.leaf])); }
-                far.push_back(f / R);
-            }
-        std::ranges::sort(far);
-        for (double q : {0.5, 0.9, 0.99, 0.999, 0.9999, 0.99999}) fprintf(stderr, "%g: %g\n", q, far[size_t(q * far.size())]);
-        fprintf(stderr, "most %g, R %g, cells %zu\n", far.back(), R, far.size());
-    }
     PointsCells out;
     out.first.assign(samples.size() + 1, 0);
     for (const auto& piece : given)

@@ -16,8 +16,7 @@ struct PointsCells {
 };
 
 // Cuts every triangle that can be seen across its longest edge until no part is larger than two samples' shares, and gives each part to the leaf
-// that a walk down the tree finds, from each node to the child whose middle is nearest to the part's. So each point of the surface stands with
-// one leaf. `samples`: of a tree, in leaf order; not empty. `share`: area over their number, m^2. Deterministic.
+// whose sample is nearest to the part's middle. So each point of the surface stands with one leaf. `samples`: of a tree, in leaf order; not empty. `share`: area over their number, m^2. Deterministic.
 PointsCells points_cells(const compute::WorldTriangles& world, std::span<const SurfaceSample> samples, float share);
 
 // The same for the same samples in another order, as a tree that was built anew has them.

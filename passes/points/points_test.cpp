@@ -41,11 +41,11 @@ protected:
 
         PointsSceneRef ref() const { return {host, samples, uploaded->data.world, cells}; }
     };
-    Tree grow(const TestScene& scene, uint32_t log2_samples) {
+    Tree grow(const TestScene& scene, uint32_t log2_samples, uint arity = 8) {
         Tree tree{scene, nullptr, nullptr, {}, {}, {}};
         tree.uploaded = std::make_unique<UploadedScene>(device, tree.scene);
         const UploadedScene& on = *tree.uploaded;
-        tree.bsh = std::make_unique<Bsh>(device, on.data.world, log2_samples, 1);
+        tree.bsh = std::make_unique<Bsh>(device, on.data.world, log2_samples, 1, arity);
         if (tree.bsh->empty()) return tree;
         engine::Recorder recorder(device);
         tree.bsh->refit(recorder, on.geometry.positions(), on.geometry.triangles(), on.geometry.instances(), on.geometry.opacity());
@@ -157,6 +157,22 @@ TEST_F(PointsTest, equals_the_twin_on_random_triangles) {
             const double seen = check(tree, 67, 41, c);
             if (log2_samples >= 9) { EXPECT_GT(seen, 0.2); }
         }
+    }
+}
+
+TEST_F(PointsTest, trees_of_every_arity) {
+    const TestScene scene = soup();
+    for (const float c : {1.0f, 8.0f}) {
+        std::vector<std::vector<RayHitRecord>> hits;
+        for (const uint arity : {2u, 4u, 8u}) {
+            SCOPED_TRACE(arity);
+            const Tree tree = grow(scene, 12, arity);
+            EXPECT_GT(check(tree, 67, 41, c), 0.2);
+            hits.push_back(draw(tree, 67, 41, {.pixels = c}).hits);
+        }
+        size_t other = 0;
+        for (size_t i = 0; i < hits[0].size(); ++i) other += hits[0][i].triangle != hits[2][i].triangle;
+        EXPECT_LE(other, hits[0].size() / 5);
     }
 }
 
