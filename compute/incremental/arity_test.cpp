@@ -240,13 +240,13 @@ TEST_P(ArityTest, carried_cuts_are_the_basic_ones) {
     for (const uint32_t depth : {0u, 1u, 3u, 8u}) {
         soup(120, depth, 100);
         const uint32_t most = 12;
-        for (AppendMode mode : {AppendMode::scan, AppendMode::atomic}) {
+        for (AppendMode mode : depth < 3 ? std::vector{AppendMode::scan} : std::vector{AppendMode::scan, AppendMode::atomic}) {
             CarriedCut carried(device, mode, 1 << 14, 0, most, bsh_constants(arity));
             BoundsTravel travel(device, arity);
             std::vector<View> all = views(most);
             std::vector<NodeView> cut;
             uint64_t evaluated = 0, needed = 0;
-            for (int f = 0; f < (depth == 8 ? 40 : 9); ++f) {
+            for (int f = 0; f < (depth == 8 ? 24 : 8); ++f) {
                 SCOPED_TRACE(testing::Message() << "depth " << depth << ", frame " << f);
                 if (f % 3) move(all);
                 if (random() % 8 == 0) all.resize(1 + random() % most);
