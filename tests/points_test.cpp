@@ -109,15 +109,21 @@ TEST_F(PointsFrameTest, what_moves_is_seen_where_it_is) {
     scene.clips = {{"flight", {{.width = 3, .times = {0, 1}, .values = {-1, 0, 0, 1, 0.5f, -0.5f}}}, {{0, 0, scenes::Path::translation}}}};
     const scenes::Triangles triangles = scenes::flatten(scene, scenes::Sharing::automatic, {{0}});
     ASSERT_GT(triangles.motion.count(), 0u);
-    passes::Frame exact(device, scene, triangles, settings(Primary::rays)), points(device, scene, triangles, settings(Primary::points));
-    Picture last;
-    for (const double seconds : {0.0, 0.4, 1.0}) {
-        const scenes::Moment moment = scenes::moment_at(scene, triangles.motion, seconds);
-        exact.move_to(moment), points.move_to(moment);
-        const Picture found = take(points, scene.cameras[0]);
-        EXPECT_LT(deep(take(exact, scene.cameras[0]), found), 0.005) << seconds;
-        if (!last.beauty.empty()) { EXPECT_GT(deep(last, found), 0.01) << seconds; }
-        last = found;
+    passes::Frame exact(device, scene, triangles, settings(Primary::rays));
+    for (const bool rebuilds : {false, true}) {  // by refits, or a new tree at every move
+        passes::FrameSettings s = settings(Primary::points);
+        if (rebuilds) s.rebuild = 0;
+        passes::Frame points(device, scene, triangles, s);
+        Picture last;
+        for (const double seconds : {0.0, 0.4, 1.0}) {
+            const scenes::Moment moment = scenes::moment_at(scene, triangles.motion, seconds);
+            exact.move_to(moment), points.move_to(moment);
+            const Picture found = take(points, scene.cameras[0]);
+            EXPECT_LT(deep(take(exact, scene.cameras[0]), found), 0.005) << seconds << rebuilds;
+            if (!last.beauty.empty()) { EXPECT_GT(deep(last, found), 0.01) << seconds; }
+            last = found;
+        }
+        EXPECT_EQ(points.tree()->rebuilds() > 0, rebuilds);
     }
 }
 
