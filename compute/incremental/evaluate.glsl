@@ -6,7 +6,7 @@ layout(push_constant, scalar) uniform Push { CarryPush push; };
 struct Evaluation {
     uint found;    // drawn | culled << 8 | open << 16, as classify_child
     bool open;     // whether the block's owner is open; false: the block must go
-    float slack, reach;
+    Slack slack;
 };
 
 // How many node-views an item holds.
@@ -17,10 +17,11 @@ void count_members(int change) {
     if (group_elect() && sum != 0u) atomicAdd(push.memory.at[0].state.at[0].cut, sum);
 }
 
-void look(inout Evaluation e, View view, vec3 d, float r, uint height, uint where) {
-    const float length = sqrt(dot(d, d));
-    e.slack = min(e.slack, node_slack(view, d, length, r, height, where, float(push.map_size) / push.epsilon));
-    e.reach = max(e.reach, length);
+// Where a node goes, and what slack it leaves the block.
+uint look(inout Evaluation e, View view, Sphere s, uint height) {
+    const uint where = classify(view, s, height, push.epsilon, push.map_size);
+    e.slack = slack_with(e.slack, view, s.center - view.position, s.radius, height, where, float(push.map_size) / push.epsilon);
+    return where;
 }
 
 BshShape shape() { return BshShape(push.leaves, push.blocks); }
@@ -48,24 +49,19 @@ Shift shift_of(uint block) {
 }
 
 Evaluation evaluate(uint block, View view) {
-    Evaluation e = Evaluation(0u, true, 1e30f, 0.0f);
+    Evaluation e = Evaluation(0u, true, slack_begin(vec3(0.0f)));
     const uint height = bsh_height(bsh_arity * block, shape());
     if (block != push.blocks) {  // the owner, which sits in the block above
         const uint owner = bsh_owner_of(block, shape());
         const Sphere s = bsh_decode(push.frames.at[owner >> bsh_arity_log2], push.spheres.at[owner]);
-        const uint where = classify(view, s, height + 1u, push.epsilon, push.map_size);
-        look(e, view, s.center - view.position, s.radius, height + 1u, where);
-        e.open = where == node_view_open;
+        e.slack = slack_begin(s.center - view.position);
+        e.open = look(e, view, s, height + 1u) == node_view_open;
     }
     if (!e.open) return e;
     const vec4 frame = push.frames.at[block];
     for (uint i = 0u; i < bsh_arity; ++i) {
         const uvec2 code = push.spheres.at[bsh_arity * block + i];
-        if (bsh_is_absent(code)) continue;
-        const Sphere s = bsh_decode(frame, code);
-        const uint where = classify(view, s, height, push.epsilon, push.map_size);
-        look(e, view, s.center - view.position, s.radius, height, where);
-        e.found |= node_view_bit(where) << i;
+        if (!bsh_is_absent(code)) e.found |= node_view_bit(look(e, view, bsh_decode(frame, code), height)) << i;
     }
     return e;
 }

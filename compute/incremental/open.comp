@@ -10,15 +10,15 @@ void main() {
     uvec2 pair = uvec2(0u);
     if (append_has(index, push.lists)) pair = push.lists.items.at[index];
     uint found = 0u;
-    Due due = Due(0.0f, 0.0f);
+    Due due = Due(0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0u);
     if (append_decides(index, push.lists)) {
         const Evaluation e = evaluate(pair.x, push.views.at[pair.y]);
         found = e.found;
-        due = due_after(memory.travels.at[pair.y - push.first_view], shift_of(pair.x).way, e.slack, e.reach);
+        due = due_after(memory.travels.at[pair.y - push.first_view], shift_of(pair.x).way, e.slack);
         const uint late = (push.flags & carry_last) != 0u ? found >> 16 : 0u;
         if (late != 0u) {
             found = (found | late) & 0xffffu;
-            due.at = -1.0f;
+            due.frustum = -1.0f;
             atomicOr(memory.travels.at[pair.y - push.first_view].flags, travel_waits);
             atomicAdd(memory.state.at[0].invalid, bitCount(late));
         }

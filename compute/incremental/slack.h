@@ -1,21 +1,36 @@
 // How far a view may move until a node-view can change side, so that blocks whose slack is not used up need not be looked at.
 //
-// classify (manylods_io.h) depends on the view's position p and direction n through two functions:
-//     f = frustum distance - cull radius      changes by at most |dp| + |d| |dn|
-//     g = |d.x| + sqrt(L^2 - r^2) - q r       with q = map size / epsilon; g > 0 where the criterion is below epsilon
-// In the valid region the tangent's length t = sqrt(L^2 - r^2) is at least r (q^2 - 1) / 2q, so |grad g| <= 1 + L / t <= 2 q^2 / (q^2 - 1).
+// classify (manylods_io.h) depends on the view's position p and direction n through two functions of d = c - p, L = |d|:
+//     f = frustum distance - cull radius      changes by at most |dp| + |d| |dn|; of a half-space, by at most |n.dp| + |d| |dn|
+//     g = |d.x| + t - q r,  t = sqrt(L^2 - r^2)       with q = map size / epsilon; g > 0 where the criterion is below epsilon
+// A view that slides along its own surface, as a light path's end does when its light moves, leaves f of half-spaces as it is: most of the floor
+// that a VPL lies on is within a node's radius of its horizon. So f has a due of its own. Of g's slack there are two kinds; the longer is kept.
+//
+// In any direction. In the valid region t is at least r (q^2 - 1) / 2q, so |grad g| <= 1 + L / t <= 2 q^2 / (q^2 - 1).
 // In the open region |d.x| + t stays below q r as long as |d.x| + L + 2 |dp| does, or, since t is concave in L, as long as |d.x| + t +
 // (1 + L / t) |dp| does. Below q = 2 there is no slack.
 //
+// In the direction that the view goes. The nodes of a block lie one way from a view, so that their g change alike: by -G.dp, with
+// G = (sign u.x, 0, 0) + u and u the direction to the block's owner, packed. Within rho = k t, with l = L / t, a node's t stays above t sqrt(c),
+// c = 1 - 2 k l + k^2; its Hessian there has the eigenvalues 1 / t and -r^2 / t^3; and so t differs from -u.dp by at most m |dp| with
+// m = |d / t - u| + k / 2 max(c^-1/2, (l^2 - 1) c^-3/2). |d.x| is convex:
+// it stays above what G says, less 2 |d.x| for a node on the other side than the owner; it is above that by at most 2 (rho - |d.x|)
+// where the view may pass the node. With A the least g of the block's closed nodes, B the least -g of its open ones (the owner is one), so
+// lessened, nothing changes side until the view has come rho, or m moved + s has risen by A, or m moved - s by B, with s = G.(p - anchor).
+// Most of a view's way is along a block's threshold, or away from it; a slack in any direction has to take all of it for an approach.
+//
 // Bounds move too: a centre like the view itself; a radius changes f by about |dr|, and g by at most (q + r / t) |dr|, which of a slack takes at
-// most (q / 2 + 1) |dr| (t is concave in L and r together).
+// most (q / 2 + 1) |dr| (t is concave in L and r together). Of A and B they take four times as much, where L / t stays below 3.
 //
 // Parallel views: g = sin_phi - q r alone, which a radius changes by q |dr|.
 //
-// What a view has travelled is summed up in two numbers, metres moved and radians (chords) turned; what the nodes of a block have, in two
-// more, metres of centres and of radii. An item's due is
-//     moved + reach turned + ways + slack     at the time it was evaluated, with |d| <= reach until then,
-// and it is due when the sum without the slack has come that far. Sums are rounded up, dues down.
+// What a view has travelled is summed up in three numbers: metres moved, metres pressed (f's part of them), and radians (chords) turned; what the
+// nodes of a block have, in two more, metres of centres and of radii. An item is due when one of these has come as far as was noted when it
+// was evaluated:
+//     pressed + reach turned + ways      f, with |d| <= reach until then
+//     moved + ways                       g
+//     m moved + 4 ways +- s              g, in the direction that the view goes
+// Sums are rounded up, dues down.
 #ifndef MYRIAD_COMPUTE_SLACK_H
 #define MYRIAD_COMPUTE_SLACK_H
 
@@ -26,10 +41,13 @@ MYRIAD_BEGIN
 const float slack_rounding = 1.0f / 262144.0f;
 
 struct Due {
-    float at;      // negative: at once, moved or not
+    float frustum;      // negative: at once, moved or not
     float reach;
+    float criterion;
+    float rise, fall;   // with s, with -s
+    uint towards;       // u and m
 };
-MYRIAD_ARRAY(Dues, Due, 8)
+MYRIAD_ARRAY(Dues, Due, 4)
 
 const uint travel_exists = 1u;
 const uint travel_moved = 2u;   // this frame
@@ -37,9 +55,10 @@ const uint travel_jumped = 4u;  // this frame, in a way that no slack covers: it
 const uint travel_late = 8u;    // lazy: something of it waits since the last frame
 const uint travel_waits = 16u;  // ... and for the next one
 struct Travel {
-    float moved;
-    float turned;
+    float moved, pressed, turned;
     uint flags;
+    vec3 anchor;  // where it was when sums began
+    vec3 come;    // from there
 };
 MYRIAD_ARRAY(Travels, Travel, 4)
 
@@ -54,13 +73,21 @@ MYRIAD_FN Travel travel_on(Travel t, View before, bool existed, View now, bool e
     if (exists != existed || now.cos_phi != before.cos_phi || now.sin_phi != before.sin_phi || !(moved < 1e12f && turned < 0.5f)) {
         t.flags |= travel_jumped;
         t.moved = 0.0f;  // every item of the view is evaluated now, so sums can begin anew, and stay fine
+        t.pressed = 0.0f;
         t.turned = 0.0f;
+        t.anchor = now.position;
+        t.come = vec3(0.0f);
         return t;
     }
     if (now.position == before.position && now.direction == before.direction) return t;
     t.flags |= travel_moved;
+    t.come = now.position - t.anchor;
     // Squares that underflow, and what sums and roots round off.
-    t.moved = next_up(t.moved + (moved * (1.0f + slack_rounding) + 1e-18f));
+    const float length = moved * (1.0f + slack_rounding) + 1e-18f;
+    t.moved = next_up(t.moved + length);
+    // The cull radius moves along with the view as it does with a node.
+    const bool half_space = before.cos_phi == 0.0f;
+    t.pressed = next_up(t.pressed + (1.0f / 1024.0f) * length + (half_space ? abs(dot(before.direction, dp)) * (1.0f + slack_rounding) : length));
     t.turned = next_up(t.turned + (turned * (1.0f + slack_rounding) + 1e-18f));
     return t;
 }
@@ -89,43 +116,150 @@ MYRIAD_FN Way way_on(Way w, float centers, float radii) {
 }
 
 // The same in every kernel, so that an item at rest is exactly where it was. `way`: what its nodes have come.
-MYRIAD_FN float travelled(Travel t, float reach, float way) {
-    MYRIAD_PRECISE const float sum = t.moved + reach * t.turned + way;
+MYRIAD_FN float travelled_frustum(Travel t, float reach, float way) {
+    MYRIAD_PRECISE const float sum = t.pressed + reach * t.turned + way;
+    return sum;
+}
+MYRIAD_FN float travelled_criterion(Travel t, float way) {
+    MYRIAD_PRECISE const float sum = t.moved + way;
     return sum;
 }
 
-// Metres; not positive: any movement may change it. `length` is |d|.
-MYRIAD_FN float node_slack(View view, vec3 d, float length, float r, uint height, uint where, float q) {
-    if (is_parallel(view)) {  // nothing is culled, and what is open depends on radii alone: sin_phi > q r where the node fits
-        if (height == 0u) return 1e30f;
-        return (abs(view.sin_phi - q * r) - slack_rounding * (view.sin_phi + q * r)) * (0.5f + 1.0f / q);
-    }
-    const float reach = reach_of(d, r);
-    const bool all_round = view.cos_phi < 0.0f && view.sin_phi == 0.0f;  // nothing is ever culled
-    // The cull radius moves along a little: less than 2^-10 of the way.
-    float slack = all_round ? 1e30f : (abs(frustum_distance(view, d) - cull_radius(d, r, height)) - slack_rounding * reach) * (1.0f - 1.0f / 1024.0f);
-    if (where == node_view_culled || height == 0u) return slack;
-    const float tangent = sqrt(max(length * length - r * r, 0.0f));
-    const float x = abs(d.x);
-    const float over = x + tangent - q * r;
-    float free = 0.0f;
-    if (where == node_view_drawn) free = over * (0.5f - 0.5f / (q * q));
-    else free = max(0.5f * (q * r - x - length), 4.0f * tangent > length ? -over * tangent / (tangent + length) : 0.0f);
-    if (q < 2.0f) free = 0.0f;
-    return min(slack, free - slack_rounding * (reach + q * r));
+// The direction of d, eight bits a coordinate, and above it m, in hundredths.
+MYRIAD_FN uint pack_towards(vec3 d) {
+    const float most = max(abs(d.x), max(abs(d.y), abs(d.z)));
+    if (!(most > 1e-30f && most < 1e30f)) return 0u;
+    vec3 u = d / most;
+    u = 127.0f * (u / sqrt(dot(u, u))) + vec3(128.5f);
+    return uint(u.x) | (uint(u.y) << 8) | (uint(u.z) << 16);
+}
+MYRIAD_FN vec3 unpack_towards(uint code) {
+    return (vec3(float(code & 0xffu), float((code >> 8) & 0xffu), float((code >> 16) & 0xffu)) - vec3(128.0f)) / 127.0f;
+}
+const float deviation_unit = 0.01f;
+
+// What is known of the slack of a block's nodes and their owner in a view. Metres.
+struct Slack {
+    float frustum;   // of f; not positive: any movement may change it
+    float any;       // of g, in any direction
+    float closed;    // A
+    float open;      // B
+    float passed;    // B where the view may pass nodes, but for 2 rho
+    float deviation; // most |d / t - u|
+    float tangent;   // least t; 0 where g has no slack by direction
+    float stretch;   // most L / t
+    float reach;     // most |d|
+    uint towards;    // u
+};
+MYRIAD_FN Slack slack_begin(vec3 towards) {
+    Slack s;
+    s.frustum = 1e30f;
+    s.any = 1e30f;
+    s.closed = 1e30f;
+    s.open = 1e30f;
+    s.passed = 1e30f;
+    s.deviation = 0.0f;
+    s.tangent = 1e30f;
+    s.stretch = 1.0f;
+    s.reach = 0.0f;
+    s.towards = pack_towards(towards);
+    return s;
 }
 
-// When an item of least slack `slack` is due, whose nodes' centres are within `reach`.
-MYRIAD_FN Due due_after(Travel t, float way, float slack, float reach) {
+// A node more.
+MYRIAD_FN Slack slack_with(Slack s, View view, vec3 d, float r, uint height, uint where, float q) {
+    if (is_parallel(view)) {  // nothing is culled, and what is open depends on radii alone: sin_phi > q r where the node fits
+        s.tangent = 0.0f;
+        s.reach = 1e30f;
+        if (height != 0u) s.any = min(s.any, (abs(view.sin_phi - q * r) - slack_rounding * (view.sin_phi + q * r)) * (0.5f + 1.0f / q));
+        return s;
+    }
+    const float reach = reach_of(d, r);
+    const float distance = sqrt(dot(d, d));
+    s.reach = max(s.reach, distance);
+    const bool all_round = view.cos_phi < 0.0f && view.sin_phi == 0.0f;  // nothing is ever culled
+    // The cull radius moves along with a node a little: less than 2^-10 of its way.
+    if (!all_round)
+        s.frustum = min(s.frustum, (abs(frustum_distance(view, d) - cull_radius(d, r, height)) - slack_rounding * reach) * (1.0f - 1.0f / 1024.0f));
+    if (where == node_view_culled || height == 0u) return s;
+    const float tangent = sqrt(max(distance * distance - r * r, 0.0f));
+    const float x = abs(d.x);
+    const float over = x + tangent - q * r;
+    const float margin = slack_rounding * (reach + q * r);
+    float free = 0.0f;
+    if (where == node_view_drawn) free = over * (0.5f - 0.5f / (q * q));
+    else free = max(0.5f * (q * r - x - distance), 4.0f * tangent > distance ? -over * tangent / (tangent + distance) : 0.0f);
+    if (q < 2.0f) free = 0.0f;
+    s.any = min(s.any, free - margin);
+
+    const vec3 u = unpack_towards(s.towards);
+    const bool beside = (d.x < 0.0f) == (u.x < 0.0f);  // the owner
+    if (where == node_view_drawn) {
+        s.closed = min(s.closed, over - margin - (beside ? 0.0f : 2.0f * x));
+    } else {
+        s.open = min(s.open, -over - margin);
+        s.passed = min(s.passed, -over - margin + (beside ? 2.0f * x : 0.0f));
+    }
+    const vec3 apart = d / tangent - u;
+    s.deviation = max(s.deviation, sqrt(dot(apart, apart)));
+    s.tangent = min(s.tangent, tangent);
+    s.stretch = max(s.stretch, distance / tangent);
+    return s;
+}
+
+// s: how far the view has come along G.
+MYRIAD_FN float along(Travel t, uint towards) {
+    const vec3 u = unpack_towards(towards);
+    MYRIAD_PRECISE const float sum = ((u.x < 0.0f ? u.x - 1.0f : u.x + 1.0f)) * t.come.x + u.y * t.come.y + u.z * t.come.z;
+    return sum;
+}
+// m moved + 4 ways: |grad g| <= 1 + L / t <= 4 within rho, and a radius changes g by less than q + L / t
+MYRIAD_FN float astray(Travel t, uint towards, float way) {
+    MYRIAD_PRECISE const float sum = deviation_unit * float(towards >> 24) * t.moved + 4.0f * way;
+    return sum;
+}
+
+// When a sum that is `now` has come `free` metres further.
+MYRIAD_FN float due_at(float now, float free) { return max(now, now + free - (now + abs(free)) * slack_rounding); }
+
+// When an item is due.
+MYRIAD_FN Due due_after(Travel t, float way, Slack slack) {
     Due due;
-    due.reach = (reach + max(slack, 0.0f)) * (1.0f + slack_rounding);
-    const float now = travelled(t, due.reach, way);
-    due.at = max(now, now + slack - (now + abs(slack)) * slack_rounding);
+    due.towards = slack.towards;
+    due.rise = 1e30f;
+    due.fall = 1e30f;
+    float free = slack.any;
+    const float least = min(slack.closed, slack.open);
+    // Less far where s will soon have come far enough: the sooner, the less a node bends.
+    const float rho = min(min(0.25f * slack.tangent, max(2.5f * least, 0.0625f * slack.tangent)), 0.5f * slack.passed - 0.25f * least);
+    const float k = rho / slack.tangent;
+    const float c = max(1.0f - 2.0f * k * slack.stretch + k * k, 0.0f);
+    if (least > 0.0f && rho > free && slack.stretch + k < 3.0f * sqrt(c)) {  // L / t stays below 3
+        const float bend = 0.5f * k * max(1.0f / sqrt(c), (slack.stretch * slack.stretch - 1.0f) / (c * sqrt(c)));
+        const float m = (slack.deviation + bend) / deviation_unit + 2.0f;  // 2: rounded up, and what tangents are good to
+        if (m < 256.0f) {
+            free = rho;
+            due.towards |= uint(m) << 24;
+            const float s = along(t, due.towards);
+            const float sum = astray(t, due.towards, way);
+            const float doubt = slack_rounding * (4.0f * (abs(t.come.x) + abs(t.come.y) + abs(t.come.z) + rho) + sum);
+            due.rise = sum + s + slack.closed * (1.0f - slack_rounding) - doubt;
+            due.fall = sum - s + min(slack.open, slack.passed - 2.0f * rho) * (1.0f - slack_rounding) - doubt;
+        }
+    }
+    free = min(free, slack.reach);  // so that |d| stays within twice that, also where all is culled
+    due.criterion = due_at(travelled_criterion(t, way), free);
+    due.reach = (slack.reach + max(free, 0.0f)) * (1.0f + slack_rounding);
+    due.frustum = due_at(travelled_frustum(t, due.reach, way), slack.frustum);
     return due;
 }
 // Asked where the view or a node has moved, or something waits: at rest, an item without slack would be due for nothing.
 MYRIAD_FN bool is_due(Due due, Travel t, float way) {
-    return (t.flags & travel_jumped) != 0u || due.at < 0.0f || !(travelled(t, due.reach, way) < due.at);
+    if ((t.flags & travel_jumped) != 0u || due.frustum < 0.0f) return true;
+    if (!(travelled_frustum(t, due.reach, way) < due.frustum && travelled_criterion(t, way) < due.criterion)) return true;
+    const float s = along(t, due.towards);
+    const float sum = astray(t, due.towards, way);
+    return !(sum + s < due.rise && sum - s < due.fall);
 }
 MYRIAD_END
 

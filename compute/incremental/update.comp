@@ -25,7 +25,7 @@ void main() {
         const Travel t = memory.travels.at[group.view - push.first_view];
         const bool exists = (t.flags & travel_exists) != 0u;
         const bool root = group.block == push.blocks;
-        Evaluation e = Evaluation(cut_no_view, root, 1e30f, 0.0f);
+        Evaluation e = Evaluation(cut_no_view, root, slack_begin(vec3(0.0f)));
         if (exists) e = evaluate(group.block, push.views.at[group.view]);
         const uint old = group.drawn | group.culled;
         change = (e.open ? members(group.block, e.found & 0xffffu) : 0) - members(group.block, group.drawn | (group.culled << 8));
@@ -34,7 +34,7 @@ void main() {
             const uvec2 now = cut_pack(group.block, group.view, e.found & 0xffffu);
             if (now != code) memory.changed.at[group.view - push.first_view] = 1u;
             memory.codes.at[item] = now;
-            memory.dues.at[item] = due_after(t, shift_of(group.block).way, e.slack, e.reach);
+            memory.dues.at[item] = due_after(t, shift_of(group.block).way, e.slack);
         } else {
             found = dropped;
             memory.changed.at[group.view - push.first_view] = 1u;
