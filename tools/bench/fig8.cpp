@@ -3,6 +3,7 @@
 // medians over `--repeat` plays, with the share of node-views that lag and what they do to the image; `--plot` draws the times of the cut.
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 
 #include "scenes/moment.hpp"
 #include "scenes/sky.hpp"
@@ -137,7 +138,7 @@ void bench_fig8(engine::Device& device, const BenchOptions& options, const RowSi
         }
         if (!options.csv.empty()) write_text(options.csv, csv(clip, shown, errors));
         if (options.plot.empty()) continue;
-        Plot plot{"Cuts of " + std::to_string(views) + " views through " + source, "frame", "cut, ms", {}};
+        Plot plot{"Cuts of " + std::to_string(views) + " views through " + std::filesystem::path(source).filename().string(), "frame", "cut, ms", {}};
         for (size_t t = 0; t < shown.size(); ++t) {
             Plot::Line line{techniques[t].name, techniques[t].colour, {}};
             for (uint32_t f = 0; f < clip.frames; ++f) line.points.push_back({double(f + 1), shown[t][f].cut.median()});
