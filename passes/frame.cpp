@@ -188,7 +188,7 @@ void Frame::render(const scenes::Camera& camera) {
     // Since paths were prepared, lights or surfaces have moved so that more VPLs live than there is room for. Fewer paths, then.
     while (vpl_ && host_words_.span()[5] > 0) {
         prepare_paths();
-        counters_.prepared = counters_.prepared.value_or(0) + 1;
+        counters_ = {.prepared = counters_.prepared.value_or(0) + 1};  // of the image that stays
         render_once(camera);
     }
     if (deform_ && tree_ && !tree_->empty()) take_quality();

@@ -118,6 +118,10 @@ TEST_F(ManyLodsTest, hard_cases) {
             all.push_back(view(soup.positions[i], {1, 0, 0}, 2));
             all.push_back(view(soup.positions[i], {1, 0, 0}, 2));  // two views at the same point
         }
+        const Bsh tree = build(soup, 9);
+        const HostTree host = tree.empty() ? HostTree() : HostTree(device, tree);
+        for (uint slot = 0; slot < host.spheres.size(); slot += 13)  // views at nodes' centres
+            if (!host.absent(slot)) all.push_back(view(host.sphere(slot).center, point(), 1));
         check(soup, 9, all, 1.0f, 32);
     };
     run("one triangle", random_soup(1));
@@ -194,6 +198,26 @@ TEST_F(ManyLodsTest, identical_views_have_identical_cuts) {
         const NodeView& expected = one[i % one.size()];
         ASSERT_TRUE(all[i].slot == expected.slot && all[i].culled == expected.culled) << "view " << all[i].view;
     }
+}
+
+TEST_F(ManyLodsTest, a_million_identical_views) {
+    const Bsh tree = build(random_soup(100), 3);
+    const uint32_t many = 1 << 20;
+    const auto groups = cut(tree, std::vector<View>(many, view({0.1f, 0.2f, 0.3f}, {0, 1, 0}, 1)), AppendMode::scan, 1, 16, 1 << 22).groups;
+    const auto one = cut(tree, {view({0.1f, 0.2f, 0.3f}, {0, 1, 0}, 1)}, AppendMode::scan, 1, 16).groups;
+    ASSERT_EQ(groups.size(), one.size() * many);
+    std::vector<uint> seen(many);
+    for (const uvec2& code : groups) {
+        const CutGroup g = cut_unpack(code);
+        ASSERT_LT(g.view, many);
+        ++seen[g.view];
+        const bool known = std::ranges::any_of(one, [&](const uvec2& c) {
+            const CutGroup o = cut_unpack(c);
+            return o.block == g.block && o.drawn == g.drawn && o.culled == g.culled;
+        });
+        ASSERT_TRUE(known) << "view " << g.view;
+    }
+    EXPECT_TRUE(std::ranges::all_of(seen, [&](uint n) { return n == one.size(); }));
 }
 
 TEST_F(ManyLodsTest, walk_equals_lists) {
