@@ -73,6 +73,12 @@ protected:
         auto before = names_and_bytes();
         const Outcome o = run(arguments, fault);
         const auto after = names_and_bytes();
+        if (o.status == 0 && contains(fault, "new:") && fault.ends_with(":fail")) {
+            // Streams swallow exceptions, and CLI11 writes help texts through them. A run that does not need what is lost does its work.
+            for (const auto& [name, bytes] : whole) EXPECT_TRUE(after.contains(name) && same(name, after.at(name), bytes)) << fault << ": " << name;
+            EXPECT_EQ(o.err, "") << fault;
+            return;
+        }
         for (const auto& [name, bytes] : whole)
             if (const auto now = after.find(name); now != after.end() && same(name, now->second, bytes)) before[name] = now->second;
         const std::string what = fault + ": " + testing::PrintToString(arguments) + "\n" + o.err;
