@@ -20,7 +20,8 @@
 // Most of a view's way is along a block's threshold, or away from it; a slack in any direction has to take all of it for an approach.
 //
 // Bounds move too: a centre like the view itself; a radius changes f by about |dr|, and g by at most (q + r / t) |dr|, which of a slack takes at
-// most (q / 2 + 1) |dr| (t is concave in L and r together). Of A and B they take four times as much, where L / t stays below 3.
+// most (q / 2 + 1) |dr| (t is concave in L and r together). Of A and B they take four times as much, where L / t
+// stays below 3 (so that `fits` is about g alone).
 //
 // Parallel views: g = sin_phi - q r alone, which a radius changes by q |dr|.
 //
@@ -193,7 +194,7 @@ MYRIAD_FN Slack slack_with(Slack s, View view, vec3 d, float r, uint height, uin
     s.any = min(s.any, free - margin);
 
     const vec3 u = unpack_towards(s.towards);
-    const bool beside = (d.x < 0.0f) == (u.x < 0.0f);  // the owner
+    const bool beside = (d.x < 0.0f) == (u.x < 0.0f);  // on the owner's side
     if (where == node_view_drawn) {
         s.closed = min(s.closed, over - margin - (beside ? 0.0f : 2.0f * x));
     } else {
@@ -210,7 +211,7 @@ MYRIAD_FN Slack slack_with(Slack s, View view, vec3 d, float r, uint height, uin
 // s: how far the view has come along G.
 MYRIAD_FN float along(Travel t, uint towards) {
     const vec3 u = unpack_towards(towards);
-    MYRIAD_PRECISE const float sum = ((u.x < 0.0f ? u.x - 1.0f : u.x + 1.0f)) * t.come.x + u.y * t.come.y + u.z * t.come.z;
+    MYRIAD_PRECISE const float sum = (u.x < 0.0f ? u.x - 1.0f : u.x + 1.0f) * t.come.x + u.y * t.come.y + u.z * t.come.z;
     return sum;
 }
 // m moved + 4 ways: |grad g| <= 1 + L / t <= 4 within rho, and a radius changes g by less than q + L / t

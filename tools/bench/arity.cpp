@@ -6,7 +6,6 @@
 #include <filesystem>
 
 #include "compute/bsh/bsh.hpp"
-#include "scenes/sky.hpp"
 #include "tools/bench/maps_bench.hpp"
 
 namespace myriad::tools {
@@ -54,17 +53,9 @@ void measure_trees(engine::Device& device, const BenchOptions& options, const sc
 }  // namespace
 
 void bench_arity(engine::Device& device, const BenchOptions& options, const RowSink& sink) {
-    const std::string source = options.scene.empty() ? "builtin:hairball" : options.scene;
     for (const uint arity : arities) compute::check_bsh_size(options.log2_samples, arity);
-    scenes::Scene scene = scenes::load(source, options.seed);
-    for (scenes::Material& m : scene.materials) m.emissive = glm::vec3(0);  // all light comes from what moves
-    scenes::apply_sky(scene, scenes::SkyChoice::automatic);
-    const scenes::Triangles triangles = scenes::flatten(scene);
-    if (scene.lights.empty()) throw InputError("\"" + source + "\" has no punctual light to move; give another --scene");
-    const Turntable table{scene, triangles};
-    const scenes::Camera camera = scenes::pick_camera(scene, triangles, options.camera);
-    std::printf("scene: %s, %zu triangles, 2^%u samples, maps 2 x %u^2, epsilon %g\n", source.c_str(), size_t(triangles.count()), options.log2_samples,
-                options.map_size, options.epsilon);
+    const Turntable table = load_turntable(options);
+    const auto& [source, scene, triangles, camera] = table;
     measure_trees(device, options, scene, triangles, source, sink);
     for (const uint32_t views : options.views.empty() ? std::vector<uint32_t>{1024} : options.views)
         for (const passes::CutUpdate update : {passes::CutUpdate::basic, passes::CutUpdate::incremental}) {

@@ -1,7 +1,10 @@
 #include "tools/bench/maps_bench.hpp"
 
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
+
+#include "scenes/sky.hpp"
 
 namespace myriad::tools {
 
@@ -18,6 +21,20 @@ passes::FrameSettings frame_settings(const BenchOptions& options, uint32_t views
     settings.maps.epsilon = options.epsilon;
     settings.maps.arity = options.arity;
     return settings;
+}
+
+Turntable load_turntable(const BenchOptions& options) {
+    Turntable table;
+    table.source = options.scene.empty() ? "builtin:hairball" : options.scene;
+    table.scene = scenes::load(table.source, options.seed);
+    for (scenes::Material& m : table.scene.materials) m.emissive = glm::vec3(0);  // all light comes from what moves
+    scenes::apply_sky(table.scene, scenes::SkyChoice::automatic);
+    table.triangles = scenes::flatten(table.scene);
+    if (table.scene.lights.empty()) throw InputError("\"" + table.source + "\" has no punctual light to move; give another --scene");
+    table.camera = scenes::pick_camera(table.scene, table.triangles, options.camera);
+    std::printf("scene: %s, %zu triangles, 2^%u samples, maps 2 x %u^2, epsilon %g\n", table.source.c_str(), size_t(table.triangles.count()),
+                options.log2_samples, options.map_size, options.epsilon);
+    return table;
 }
 
 scenes::Moment Turntable::at(double degrees) const {

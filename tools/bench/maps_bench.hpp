@@ -12,12 +12,16 @@ passes::FrameSettings frame_settings(const BenchOptions& options, uint32_t views
 
 // A scene whose lights go around it, without those that are emitting surfaces.
 struct Turntable {
-    const scenes::Scene& scene;
-    const scenes::Triangles& triangles;
+    std::string source;
+    scenes::Scene scene;
+    scenes::Triangles triangles;
+    scenes::Camera camera;
 
     // Lights at `degrees` around the vertical through the scene's middle.
     scenes::Moment at(double degrees) const;
 };
+// Of the options' scene, the hairball unless they name one; says on the terminal what is measured. Throws InputError where nothing shines that could move.
+Turntable load_turntable(const BenchOptions& options);
 
 // A row with the settings that say what is in it. `source` is shortened to its file's name.
 BenchRow maps_row(const char* bench, const std::string& source, const char* technique, const passes::FrameSettings& settings);

@@ -3,7 +3,6 @@
 // is what the maps take, cut and splat or what stands in their place, `error` is the last frame's, against the same VPLs with exact rays.
 #include <cstdio>
 
-#include "scenes/sky.hpp"
 #include "tools/bench/maps_bench.hpp"
 #include "tools/metrics.hpp"
 #include "tools/render_image.hpp"
@@ -34,17 +33,9 @@ const Technique techniques[] = {
 }  // namespace
 
 void bench_table1(engine::Device& device, const BenchOptions& options, const RowSink& sink) {
-    const std::string source = options.scene.empty() ? "builtin:hairball" : options.scene;
-    scenes::Scene scene = scenes::load(source, options.seed);
-    for (scenes::Material& m : scene.materials) m.emissive = glm::vec3(0);  // all light comes from what moves
-    scenes::apply_sky(scene, scenes::SkyChoice::automatic);
-    const scenes::Triangles triangles = scenes::flatten(scene);
-    if (scene.lights.empty()) throw InputError("\"" + source + "\" has no punctual light to move; give another --scene");
-    const Turntable table{scene, triangles};
-    const scenes::Camera camera = scenes::pick_camera(scene, triangles, options.camera);
+    const Turntable table = load_turntable(options);
+    const auto& [source, scene, triangles, camera] = table;
     const std::vector<uint32_t> counts = options.views.empty() ? std::vector<uint32_t>{1024} : options.views;
-    std::printf("scene: %s, %zu triangles, 2^%u samples, maps 2 x %u^2, epsilon %g\n", source.c_str(), size_t(triangles.count()), options.log2_samples,
-                options.map_size, options.epsilon);
     for (const uint32_t views : counts)
         for (const double step : {1.0, 10.0}) {
             // The first frame warms up, lets lists grow, and is what the next starts from.
