@@ -88,9 +88,7 @@ function(myriad_room room)
     if(tests)
       add_executable(myriad_${room}_tests ${tests})
       target_link_libraries(myriad_${room}_tests PRIVATE myriad_${room} dep::gtest dep::gtest_main)
-      if(MYRIAD_SANITIZE)  # what a test does itself is little, and compiles in two thirds of the time
-        target_compile_options(myriad_${room}_tests PRIVATE -O0)
-      endif()
+      target_compile_options(myriad_${room}_tests PRIVATE ${MYRIAD_TEST_OPTIONS})
       foreach(twins myriad_${room} ${ARG_LINK})  # its own twins, and those of the rooms it builds on
         if(TARGET ${twins}_ref)
           target_link_libraries(myriad_${room}_tests PRIVATE ${twins}_ref)

@@ -176,6 +176,7 @@ void Frame::take_quality() {
     tree_growth_ = tree_extent_ > 0 ? quality.extent / tree_extent_ : 1;
     counters_.tree_growth = tree_growth_;
     counters_.tree_overlap = quality.overlap;
+    counters_.tree_rebuilds = tree_->rebuilds();
 }
 
 void Frame::report(const std::string& stage, double done) const {

@@ -84,6 +84,7 @@ struct FrameCounters {
     std::optional<uint64_t> prepared;   // times that light paths were prepared anew, since more VPLs lived than there is room for
     // Where the scene moves, of the sphere tree (BshQuality): its extent against what it was when built, and its overlap.
     std::optional<double> tree_growth, tree_overlap;
+    std::optional<uint32_t> tree_rebuilds;  // since the first frame
     std::optional<MapCounters> maps;    // visibility by maps
     std::optional<PointsCounters> points;  // primary: points
 };

@@ -11,34 +11,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tests/program.hpp"
+#include "tests/command_line.hpp"
 #include "tools/exr.hpp"
 #include "tools/png.hpp"
 
 namespace myriad::tools {
 namespace {
-
-class command_line : public testing::Test {
-protected:
-    // Ends with that status and one sentence on stderr, and leaves no file.
-    void refuse(int status, const Arguments& arguments, const std::string& part, const Environment& environment = {}) {
-        const Outcome o = myriad_program(arguments, environment);
-        const std::string what = testing::PrintToString(arguments) + "\n" + o.err;
-        EXPECT_EQ(o.status, status) << what;
-        EXPECT_EQ(o.error_lines(), 1) << what;
-        EXPECT_TRUE(o.err.starts_with("error: ") && contains(o.err, part)) << what;
-        EXPECT_TRUE(folder.names().empty()) << what << testing::PrintToString(folder.names());
-    }
-    void succeed(const Arguments& arguments, const Environment& environment = {}) {
-        last = myriad_program(arguments, environment);
-        EXPECT_EQ(last.status, 0) << testing::PrintToString(arguments) << "\n" << last.err;
-        EXPECT_EQ(last.err, "") << testing::PrintToString(arguments);
-    }
-
-    TempFolder folder;
-    const std::string exr = folder / "a.exr", png = folder / "a.png";
-    Outcome last;
-};
 
 TEST_F(command_line, help_names_every_option) {
     const std::map<std::string, Arguments> options = {
@@ -46,7 +24,7 @@ TEST_F(command_line, help_names_every_option) {
         {"render", {"SCENE",     "--output",   "--png",  "--size",    "--camera",  "--seed",    "--primary", "--primary-pixels", "--visibility", "--append",
                     "--vpls",    "--bounces",  "--map-size",          "--epsilon", "--samples", "--gather",     "--filter",
                     "--vpl-bound", "--bias",   "--exposure",          "--memory-limit",         "--stats",      "--trace",
-                    "--aov",     "--cache",  "--instances",         "--sky",     "--device",   "--repeat", "--float", "--animation", "--time", "--frames", "--fps", "--loop", "--camera-path", "--env", "--env-lights", "--env-rotation", "--env-strength", "--quiet",   "1:1",       "builtin:cornell", "W/sr"}},
+                    "--aov",     "--cache",  "--instances",         "--sky",     "--device",   "--repeat", "--float", "--animation", "--time", "--frames", "--fps", "--loop", "--camera-path", "--rebuild", "--env", "--env-lights", "--env-rotation", "--env-strength", "--quiet",   "1:1",       "builtin:cornell", "W/sr"}},
         {"compare", {"REF", "TEST", "--json", "--fail-above", "--fail-below", "--layer", "--diff", "--tolerance"}},
         {"bench", {"--json"}},
         {"convert", {"IN", "OUT", "--unit", "--up", "--crease", "--colors", "--seed", "--quiet", ".gltf", ".glb", ".obj", ".ply.gz", ".stl", ".fbx", ".dae", ".json", "builtin:NAME"}},
@@ -295,86 +273,6 @@ TEST_F(command_line, repeats_are_all_counted) {
     EXPECT_EQ(nlohmann::json::parse(bytes_of(folder / "s.json"))["frames"].size(), 3u);
 }
 
-// A square of 2 m that shines, 3 m before the first camera; its clip "rise" lifts it out of the picture within a second.
-std::string moving_scene(const TempFolder& folder) {
-    const float numbers[] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, -1, 0, 1, 1, 0, -1, 1, 0, 0, 1, 0, 0, 0, 0, 8, 0};
-    std::ofstream(folder / "numbers.bin", std::ios::binary).write(reinterpret_cast<const char*>(numbers), sizeof numbers);
-    std::ofstream(folder / "moving.gltf") << R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
-        "nodes": [{"name": "sign", "mesh": 0}, {"name": "front", "camera": 0, "translation": [0, 0, 3]}],
-        "cameras": [{"type": "perspective", "perspective": {"yfov": 0.8, "znear": 0.1}}],
-        "materials": [{"emissiveFactor": [1, 1, 1]}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
-        "buffers": [{"uri": "numbers.bin", "byteLength": 104}],
-        "bufferViews": [{"buffer": 0, "byteLength": 72}, {"buffer": 0, "byteOffset": 72, "byteLength": 8}, {"buffer": 0, "byteOffset": 80, "byteLength": 24}],
-        "accessors": [{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 6, "min": [-1, -1, 0], "max": [1, 1, 0]},
-                      {"bufferView": 1, "componentType": 5126, "type": "SCALAR", "count": 2, "min": [0], "max": [1]},
-                      {"bufferView": 2, "componentType": 5126, "type": "VEC3", "count": 2}],
-        "animations": [{"name": "rise", "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}], "samplers": [{"input": 1, "output": 2}]}]})";
-    return folder / "moving.gltf";
-}
-
-double mean(const std::string& path) {
-    const Image image = read_exr(path);
-    double sum = 0;
-    for (size_t i = 0; i < image.pixels(); ++i) sum += double(image.rgb()->r[i]);
-    return sum / double(image.pixels());
-}
-
-TEST_F(command_line, frames_are_moments) {
-    TempFolder input;
-    const Arguments render = {"render", moving_scene(input), "--size", "16x16", "--vpls", "64", "--samples", "8", "--sky", "off", "-q"};
-    succeed(render + Arguments{"-o", exr, "--frames", "0-2", "--fps", "4", "--stats", folder / "s.json"});
-    EXPECT_EQ(folder.names(), (Arguments{"a.0000.exr", "a.0001.exr", "a.0002.exr", "s.json"}));
-    EXPECT_GT(mean(folder / "a.0000.exr"), 0.5) << "the sign is there";
-    EXPECT_EQ(mean(folder / "a.0002.exr"), 0) << "4 m up it is not";
-    const auto frames = nlohmann::json::parse(bytes_of(folder / "s.json"))["frames"];
-    ASSERT_EQ(frames.size(), 3u);
-    EXPECT_EQ(frames[1]["frame"], 1);
-    EXPECT_EQ(frames[1]["seconds"], 0.25);
-    // A moment is the same alone, in a sequence, a loop later, and by the clip's name; but for the metadata of the files.
-    const auto same = [&](const Arguments& how, const char* frame) {
-        succeed(render + Arguments{"-o", exr} + how);
-        const auto a = read_exr(exr), b = read_exr(folder / frame);
-        ASSERT_EQ(std::pair(a.width, a.height), std::pair(b.width, b.height));
-        for (const char* name : {"R", "G", "B"}) EXPECT_TRUE(a.find(name)->values == b.find(name)->values) << testing::PrintToString(how) << " " << name;
-    };
-    same({"--time", "0.25"}, "a.0001.exr");
-    same({"--time", "1.25", "--animation", "rise"}, "a.0001.exr");
-    same({"--time", "7", "--loop", "off"}, "a.0002.exr");
-    same({}, "a.0000.exr");
-}
-
-TEST_F(command_line, cameras_go_their_ways) {
-    TempFolder input;
-    std::ofstream(input / "way.json") << R"({"camera_path": 1, "keys": [{"time": 0, "eye": [0, 0, 3], "target": [0, 0, 0]}, {"time": 1, "eye": [0, 0, 3], "target": [0, 9, 0]}]})";
-    const Arguments render = {"render", moving_scene(input), "--size", "16x16", "--vpls", "0", "--sky", "off", "-q", "--camera-path", input / "way.json"};
-    succeed(render + Arguments{"-o", exr, "--frames", "0-1", "--fps", "1", "--animation", "0"});
-    EXPECT_GT(mean(folder / "a.0000.exr"), 0.5);
-    EXPECT_EQ(mean(folder / "a.0001.exr"), 0);
-}
-
-TEST_F(command_line, moments_that_make_no_sense) {
-    TempFolder input;
-    const std::string scene = moving_scene(input);
-    const Arguments still = tiny + Arguments{"-o", exr}, moving = {"render", scene, "-o", exr};
-    refuse(2, still + Arguments{"--frames", "0-3"}, "the scene has no animation");
-    refuse(2, still + Arguments{"--animation", "0"}, "there is no animation \"0\"");
-    refuse(2, moving + Arguments{"--animation", "fall"}, "0 \"rise\"");
-    refuse(2, moving + Arguments{"--time", "1", "--frames", "0-3"}, "--time and --frames");
-    refuse(2, moving + Arguments{"--frames", "3-0"}, "--frames '3-0'");
-    refuse(2, moving + Arguments{"--frames", "0-1", "--repeat", "2"}, "--repeat");
-    refuse(2, moving + Arguments{"--time", "soon"}, "--time 'soon'");
-    refuse(2, moving + Arguments{"--fps", "0", "--frames", "0-1"}, "--fps '0'");
-    refuse(2, moving + Arguments{"--fps", "12"}, "--fps needs frames");
-    refuse(2, moving + Arguments{"--fps", "12", "--time", "1"}, "--fps needs frames");
-    refuse(2, moving + Arguments{"--camera-path", input / "none.json", "--time", "0"}, "none.json");
-    refuse(2, moving + Arguments{"--camera-path", input / "way.json"}, "which moment");
-    refuse(2, moving + Arguments{"--camera-path", input / "way.json", "--camera", "0", "--time", "0"}, "--camera and --camera-path");
-    // Through its own target, half way between two good keys: said before the first frame, which would be good.
-    put(input / "through.json", R"({"camera_path": 1, "interpolation": "linear", "keys": [{"time": 0, "eye": [0, 0, 3], "target": [0, 0, 0]},
-                                                                                          {"time": 1, "eye": [0, 0, -3], "target": [0, 0, 0]}]})");
-    refuse(2, moving + Arguments{"--camera-path", input / "through.json", "--frames", "0-2", "--fps", "2"}, "at 0.500000 s the eye is at the target");
-}
-
 TEST_F(command_line, the_same_render_gives_the_same_bytes) {
     succeed(tiny + Arguments{"-o", exr, "--aov", "all"});
     const std::string first = bytes_of(exr);
@@ -422,103 +320,6 @@ TEST_F(command_line, compare) {
     EXPECT_EQ(o.status, 1) << o.err;
     EXPECT_EQ(o.error_lines(), 1) << o.err;
     EXPECT_GT(nlohmann::json::parse(o.out)["MSE"], 0);
-}
-
-std::vector<nlohmann::json> rows_of(const std::filesystem::path& file) {
-    std::istringstream lines(bytes_of(file));
-    std::vector<nlohmann::json> rows;
-    for (std::string line; std::getline(lines, line);) rows.push_back(nlohmann::json::parse(line));
-    return rows;
-}
-
-// A row for each technique and step of the light. What the numbers are is no test's business here.
-TEST_F(command_line, bench_table_1) {
-    succeed({"bench", "manylods-table1", "--scene", "builtin:cornell?light=point", "--views", "4", "--samples", "6", "--map-size", "4", "--repeat", "1",
-             "--json", folder / "rows.json"});
-    std::map<double, Arguments> techniques;  // by the step
-    for (const auto& row : rows_of(folder / "rows.json")) {
-        EXPECT_EQ(row["bench"], "manylods-table1");
-        EXPECT_EQ(row["views"], 4);
-        EXPECT_EQ(row["ms"]["n"], 1) << row;
-        EXPECT_FALSE(row["stages"].empty()) << row;
-        EXPECT_TRUE(row["error"]["relMSE"].is_number()) << row;
-        techniques[row["settings"]["light_step_deg"].get<double>()].push_back(row["technique"].get<std::string>());
-    }
-    const Arguments all = {"brute", "ism", "basic", "incremental", "incremental", "lazy"};
-    EXPECT_EQ(techniques, (std::map<double, Arguments>{{1, all}, {10, all}}));
-}
-
-// What Table 2 has, for so many points and for twice as many; rays once.
-TEST_F(command_line, bench_table_2) {
-    succeed({"bench", "manylods-table2", "--scene", "builtin:cornell", "--samples", "8", "--repeat", "1", "--json", folder / "rows.json"});
-    std::map<uint64_t, Arguments> techniques;
-    for (const auto& row : rows_of(folder / "rows.json")) {
-        EXPECT_EQ(row["bench"], "manylods-table2");
-        EXPECT_EQ(row["views"], 1) << row;
-        EXPECT_EQ(row["ms"]["n"], 1) << row;
-        techniques[row["settings"].value("samples", 0)].push_back(row["technique"]);
-        if (row["technique"] == "points") { EXPECT_TRUE(row["error"]["another_depth"].is_number() && row["stages"]["cut"].is_number()) << row; }
-        if (row["technique"] == "update") { EXPECT_GT(row["counters"]["times_copy"], 0) << row; }
-    }
-    const Arguments each = {"build", "update", "copy", "points", "points", "points"};
-    EXPECT_EQ(techniques, (std::map<uint64_t, Arguments>{{0, {"poly"}}, {256, each}, {512, each}}));
-}
-
-// A row a technique, a line of the table a frame, and a plot.
-TEST_F(command_line, bench_figure_8) {
-    refuse(2, {"bench", "manylods-fig8", "--scene", "builtin:cornell"}, "has no animation to play");
-    refuse(2, {"bench", "manylods-table1", "--plot", folder / "f.svg"}, "--plot is an option of bench manylods-fig8");
-    const Arguments small = {"--scene", "builtin:teatime?detail=0.25", "--views", "4", "--samples", "8", "--map-size", "4", "--repeat", "1"};
-    Arguments arguments = {"bench", "manylods-fig8", "--frames", "3", "--json", folder / "rows.json", "--csv", folder / "f.csv", "--plot", folder / "f.svg"};
-    arguments.insert(arguments.end(), small.begin(), small.end());
-    succeed(arguments);
-    Arguments techniques;
-    for (const auto& row : rows_of(folder / "rows.json")) {
-        techniques.push_back(row["technique"]);
-        EXPECT_EQ(row["ms"]["n"], 3) << row;
-        EXPECT_EQ(row["settings"]["frames"], 3) << row;
-    }
-    EXPECT_EQ(techniques, (Arguments{"basic", "incremental", "lazy"}));
-    const std::string table = bytes_of(folder / "f.csv");
-    EXPECT_EQ(std::ranges::count(table, '\n'), 4) << table;
-    EXPECT_EQ(std::ranges::count(table, ','), 4 * 12) << table;
-    EXPECT_TRUE(contains(bytes_of(folder / "f.svg"), ">lazy</text>"));
-}
-
-// For each arity what its tree takes, and its cuts.
-TEST_F(command_line, bench_arity) {
-    refuse(2, {"bench", "manylods-arity", "--arity", "4"}, "--arity is an option of bench manylods");
-    succeed({"bench", "manylods-arity", "--scene", "builtin:cornell?light=point", "--views", "4", "--samples", "7", "--map-size", "4", "--repeat", "2",
-             "--json", folder / "rows.json"});
-    std::map<std::string, std::vector<int>> arities;
-    std::map<std::string, double> node_views;
-    for (const auto& row : rows_of(folder / "rows.json")) {
-        arities[row["technique"]].push_back(row["settings"]["arity"]);
-        EXPECT_EQ(row["ms"]["n"], 2) << row;
-        if (row["technique"] == "refit") {
-            EXPECT_GT(row["bytes"]["bsh"], 0) << row;
-        } else {  // carried cuts may find nothing to look at
-            node_views[row["technique"]] += row["counters"]["node_views"].get<double>();
-        }
-    }
-    EXPECT_LT(node_views.at("incremental"), node_views.at("basic"));
-    const std::vector<int> all = {2, 4, 8};
-    EXPECT_EQ(arities, (std::map<std::string, std::vector<int>>{{"basic", all}, {"incremental", all}, {"refit", all}}));
-}
-
-// Maps in the same time, diffuse and glossy; ISM has as few points as there are.
-TEST_F(command_line, bench_ism) {
-    refuse(2, {"bench", "manylods-ism", "--images", folder / "none"}, "there is no such folder");
-    std::filesystem::create_directory(folder / "images");
-    succeed({"bench", "manylods-ism", "--scene", "builtin:cornell", "--views", "4", "--samples", "6", "--map-size", "4", "--repeat", "1", "--json",
-             folder / "rows.json", "--images", folder / "images"});
-    Arguments which;
-    for (const auto& row : rows_of(folder / "rows.json")) {
-        which.push_back(row["technique"].get<std::string>() + " " + row["settings"]["brdf"].get<std::string>());
-        EXPECT_TRUE(row["error"]["relMSE"].is_number()) << row;
-    }
-    EXPECT_EQ(which, (Arguments{"manylods diffuse", "ism diffuse", "manylods gltf", "ism gltf"}));
-    for (const char* image : {"diffuse-4-rays.exr", "gltf-4-ism.png"}) EXPECT_TRUE(std::filesystem::exists(folder / "images" / image)) << image;
 }
 
 TEST_F(command_line, convert) {

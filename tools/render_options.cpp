@@ -1,6 +1,7 @@
 #include "tools/render_options.hpp"
 
 #include <filesystem>
+#include <limits>
 #include <set>
 
 #include "scenes/scene.hpp"
@@ -97,6 +98,12 @@ void add_movement(CLI::App& command, RenderOptions& o) {
     add_parsed(command, "--frames", "A-B", "", "frames A to B, frame i at i / fps seconds; FILE.exr becomes FILE.0000.exr and so on",
                [&o](const std::string& text) { o.frames = parse_frames("--frames", text); });
     add_parsed(command, "--fps", "N", "24", "frames a second, of --frames", [&o](const std::string& text) { o.fps = parse_rate("--fps", text); });
+    add_parsed(command, "--rebuild", "off|GROWTH", "off", "builds the tree of --samples anew when deformation has made its spheres that many times as large as they were\n"
+               "(tree_growth in --stats), 0: whenever something moves; else it is refitted, which is cheaper but lets cuts grow",
+               [&o](const std::string& text) {
+                   o.rebuild = true;
+                   o.frame.rebuild = text == "off" ? std::numeric_limits<float>::infinity() : parse_number("--rebuild", text, 0, 1e6f);
+               });
     add_choice(command, "--loop", o.loop, {{"on", true}, {"off", false}}, "clips begin again at their ends, or stay there");
     command.add_option("--camera-path", o.camera_path, "the camera's way, in place of the scene's cameras: JSON, see scenes/README.md")->type_name("FILE");
 }
@@ -218,6 +225,8 @@ void check_outputs(const RenderOptions& o) {
     if (o.frames && o.repeat > 1) throw InputError("--frames renders a moment each, --repeat one moment again and again; give one of them");
     if (!o.camera_path.empty() && !o.camera.empty()) throw InputError("--camera and --camera-path both say where to look from; give one of them");
     if (!o.camera_path.empty() && !o.time && !o.frames) throw InputError("--camera-path is a way in time; say which moment with --time, or which with --frames");
+    if (o.rebuild && !o.moves())
+        throw InputError("--rebuild is about a scene that moves; play a clip, with --frames, --time or --animation");
     if (o.primary_pixels && o.frame.primary != passes::Primary::points)
         throw InputError("--primary-pixels is about points, and rays have no size; give --primary points with it");
     const RenderOptions::Environment& e = o.environment;

@@ -27,6 +27,7 @@ struct RenderOptions {
     std::vector<std::string> layers;     // of the EXR beside the beauty: some of layer_names()
     std::optional<float> exposure;       // absent: auto
     std::optional<float> primary_pixels; // absent: what frame says
+    bool rebuild = false;                // whether it is given; frame says when
     passes::FrameSettings frame;
     engine::DeviceOptions device;
     scenes::Sharing instances = scenes::Sharing::automatic;

@@ -40,6 +40,7 @@ ordered_json counters_json(const FrameRun& frame) {
     if (frame.counters.prepared) counters["light_paths_prepared"] = *frame.counters.prepared;
     if (frame.counters.tree_growth) counters["tree_growth"] = *frame.counters.tree_growth;
     if (frame.counters.tree_overlap) counters["tree_overlap"] = *frame.counters.tree_overlap;
+    if (frame.counters.tree_rebuilds) counters["tree_rebuilds"] = *frame.counters.tree_rebuilds;
     if (const auto& maps = frame.counters.maps) {
         if (maps->list_capacity) {
             counters["node_views"] = maps->node_views;
@@ -152,6 +153,7 @@ ordered_json settings_json(const passes::FrameSettings& s, float vpl_bound, bool
     json["epsilon"] = shortest(s.maps.epsilon);
     json["log2_samples"] = s.log2_samples;
     json["arity"] = s.maps.arity;
+    if (std::isfinite(s.rebuild)) json["rebuild"] = shortest(s.rebuild);
     return json;
 }
 

@@ -1,0 +1,111 @@
+// The benches as users start them: which rows they write, and what they refuse. What their numbers are is no test's business here.
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/command_line.hpp"
+
+namespace myriad::tools {
+namespace {
+
+std::vector<nlohmann::json> rows_of(const std::filesystem::path& file) {
+    std::istringstream lines(bytes_of(file));
+    std::vector<nlohmann::json> rows;
+    for (std::string line; std::getline(lines, line);) rows.push_back(nlohmann::json::parse(line));
+    return rows;
+}
+
+// A row for each technique and step of the light. What the numbers are is no test's business here.
+TEST_F(command_line, bench_table_1) {
+    succeed({"bench", "manylods-table1", "--scene", "builtin:cornell?light=point", "--views", "4", "--samples", "6", "--map-size", "4", "--repeat", "1",
+             "--json", folder / "rows.json"});
+    std::map<double, Arguments> techniques;  // by the step
+    for (const auto& row : rows_of(folder / "rows.json")) {
+        EXPECT_EQ(row["bench"], "manylods-table1");
+        EXPECT_EQ(row["views"], 4);
+        EXPECT_EQ(row["ms"]["n"], 1) << row;
+        EXPECT_FALSE(row["stages"].empty()) << row;
+        EXPECT_TRUE(row["error"]["relMSE"].is_number()) << row;
+        techniques[row["settings"]["light_step_deg"].get<double>()].push_back(row["technique"].get<std::string>());
+    }
+    const Arguments all = {"brute", "ism", "basic", "incremental", "incremental", "lazy"};
+    EXPECT_EQ(techniques, (std::map<double, Arguments>{{1, all}, {10, all}}));
+}
+
+// What Table 2 has, for so many points and for twice as many; rays once.
+TEST_F(command_line, bench_table_2) {
+    succeed({"bench", "manylods-table2", "--scene", "builtin:cornell", "--samples", "8", "--repeat", "1", "--json", folder / "rows.json"});
+    std::map<uint64_t, Arguments> techniques;
+    for (const auto& row : rows_of(folder / "rows.json")) {
+        EXPECT_EQ(row["bench"], "manylods-table2");
+        EXPECT_EQ(row["views"], 1) << row;
+        EXPECT_EQ(row["ms"]["n"], 1) << row;
+        techniques[row["settings"].value("samples", 0)].push_back(row["technique"]);
+        if (row["technique"] == "points") { EXPECT_TRUE(row["error"]["another_depth"].is_number() && row["stages"]["cut"].is_number()) << row; }
+        if (row["technique"] == "update") { EXPECT_GT(row["counters"]["times_copy"], 0) << row; }
+    }
+    const Arguments each = {"build", "update", "copy", "points", "points", "points"};
+    EXPECT_EQ(techniques, (std::map<uint64_t, Arguments>{{0, {"poly"}}, {256, each}, {512, each}}));
+}
+
+// A row a technique, a line of the table a frame, and a plot.
+TEST_F(command_line, bench_figure_8) {
+    refuse(2, {"bench", "manylods-fig8", "--scene", "builtin:cornell"}, "has no animation to play");
+    refuse(2, {"bench", "manylods-table1", "--plot", folder / "f.svg"}, "--plot is an option of bench manylods-fig8");
+    const Arguments small = {"--scene", "builtin:teatime?detail=0.25", "--views", "4", "--samples", "8", "--map-size", "4", "--repeat", "1"};
+    Arguments arguments = {"bench", "manylods-fig8", "--frames", "3", "--json", folder / "rows.json", "--csv", folder / "f.csv", "--plot", folder / "f.svg"};
+    arguments.insert(arguments.end(), small.begin(), small.end());
+    succeed(arguments);
+    Arguments techniques;
+    for (const auto& row : rows_of(folder / "rows.json")) {
+        techniques.push_back(row["technique"]);
+        EXPECT_EQ(row["ms"]["n"], 3) << row;
+        EXPECT_EQ(row["settings"]["frames"], 3) << row;
+    }
+    EXPECT_EQ(techniques, (Arguments{"basic", "incremental", "lazy"}));
+    const std::string table = bytes_of(folder / "f.csv");
+    EXPECT_EQ(std::ranges::count(table, '\n'), 4) << table;
+    EXPECT_EQ(std::ranges::count(table, ','), 4 * 12) << table;
+    EXPECT_TRUE(contains(bytes_of(folder / "f.svg"), ">lazy</text>"));
+}
+
+// For each arity what its tree takes, and its cuts.
+TEST_F(command_line, bench_arity) {
+    refuse(2, {"bench", "manylods-arity", "--arity", "4"}, "--arity is an option of bench manylods");
+    succeed({"bench", "manylods-arity", "--scene", "builtin:cornell?light=point", "--views", "4", "--samples", "7", "--map-size", "4", "--repeat", "2",
+             "--json", folder / "rows.json"});
+    std::map<std::string, std::vector<int>> arities;
+    std::map<std::string, double> node_views;
+    for (const auto& row : rows_of(folder / "rows.json")) {
+        arities[row["technique"]].push_back(row["settings"]["arity"]);
+        EXPECT_EQ(row["ms"]["n"], 2) << row;
+        if (row["technique"] == "refit") {
+            EXPECT_GT(row["bytes"]["bsh"], 0) << row;
+        } else {  // carried cuts may find nothing to look at
+            node_views[row["technique"]] += row["counters"]["node_views"].get<double>();
+        }
+    }
+    EXPECT_LT(node_views.at("incremental"), node_views.at("basic"));
+    const std::vector<int> all = {2, 4, 8};
+    EXPECT_EQ(arities, (std::map<std::string, std::vector<int>>{{"basic", all}, {"incremental", all}, {"refit", all}}));
+}
+
+// Maps in the same time, diffuse and glossy; ISM has as few points as there are.
+TEST_F(command_line, bench_ism) {
+    refuse(2, {"bench", "manylods-ism", "--images", folder / "none"}, "there is no such folder");
+    std::filesystem::create_directory(folder / "images");
+    succeed({"bench", "manylods-ism", "--scene", "builtin:cornell", "--views", "4", "--samples", "6", "--map-size", "4", "--repeat", "1", "--json",
+             folder / "rows.json", "--images", folder / "images"});
+    Arguments which;
+    for (const auto& row : rows_of(folder / "rows.json")) {
+        which.push_back(row["technique"].get<std::string>() + " " + row["settings"]["brdf"].get<std::string>());
+        EXPECT_TRUE(row["error"]["relMSE"].is_number()) << row;
+    }
+    EXPECT_EQ(which, (Arguments{"manylods diffuse", "ism diffuse", "manylods gltf", "ism gltf"}));
+    for (const char* image : {"diffuse-4-rays.exr", "gltf-4-ism.png"}) EXPECT_TRUE(std::filesystem::exists(folder / "images" / image)) << image;
+}
+
+}  // namespace
+}  // namespace myriad::tools
