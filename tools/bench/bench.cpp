@@ -42,6 +42,7 @@ const std::vector<Bench>& benches() {
          {"--animation", "--frames", "--csv", "--plot", "--arity"}},
         {"manylods-ism", "imperfect shadow maps with the points a map that take ManyLoDs' time, diffuse and glossy", bench_equal_time, {"--images", "--arity"}},
         {"manylods-arity", "trees of arity 2, 4 and 8: what they take, to refit and to be cut, from the roots and from the frame before", bench_arity},
+        {"sort", "radix sorts of keys with payload: the device's, in several shapes, against the host's", bench_sort},
         {"stability", "a scene scaled, far from the origin, and on a floor that is much larger: where images suffer", bench_stability, {"--arity"}},
     };
     return all;

@@ -75,6 +75,8 @@ void bench_fig8(engine::Device& device, const BenchOptions& options, const RowSi
 void bench_arity(engine::Device& device, const BenchOptions& options, const RowSink& sink);
 // bench/equal_time.cpp
 void bench_equal_time(engine::Device& device, const BenchOptions& options, const RowSink& sink);
+// bench/sort.cpp
+void bench_sort(engine::Device& device, const BenchOptions& options, const RowSink& sink);
 // bench/stability.cpp
 void bench_stability(engine::Device& device, const BenchOptions& options, const RowSink& sink);
 
