@@ -92,6 +92,32 @@ TEST_F(command_line, bench_arity) {
     EXPECT_EQ(arities, (std::map<std::string, std::vector<int>>{{"basic", all}, {"incremental", all}, {"refit", all}}));
 }
 
+// Both widths, verified; few keys, so in the device's shape only.
+TEST_F(command_line, bench_sort) {
+    refuse(2, {"bench", "octree", "--items", "4"}, "--items is an option of bench sort");
+    succeed({"bench", "sort", "--items", "1,3000", "--repeat", "2", "--json", folder / "rows.json"});
+    std::map<std::string, int> rows;
+    for (const auto& row : rows_of(folder / "rows.json")) {
+        ++rows[row["technique"]];
+        EXPECT_EQ(row["ms"]["n"], 2) << row;
+    }
+    EXPECT_EQ(rows, (std::map<std::string, int>{{"copy", 4}, {"device", 4}, {"native-radix", 4}, {"native-stable-sort", 4}}));
+}
+
+// The same tree on the host and on the device, also where it has more nodes than were foreseen.
+TEST_F(command_line, bench_octree) {
+    refuse(2, {"bench", "sort", "--depth", "4"}, "--depth is an option of bench octree");
+    succeed({"bench", "octree", "--scene", "builtin:cornell", "--samples", "9", "--depth", "21", "--repeat", "2", "--json", folder / "rows.json"});
+    const auto rows = rows_of(folder / "rows.json");
+    ASSERT_EQ(rows.size(), 2u);
+    EXPECT_EQ(rows[0]["technique"], "native-octree");
+    EXPECT_EQ(rows[1]["technique"], "octree");
+    EXPECT_EQ(rows[0]["counters"]["nodes"], rows[1]["counters"]["nodes"]);
+    EXPECT_GT(rows[1]["counters"]["nodes"], 2 * 512);
+    EXPECT_EQ(rows[1]["counters"]["nodes_00"], 1);
+    EXPECT_EQ(rows[1]["counters"]["nodes_21"], rows[1]["counters"]["leaves"]);
+}
+
 // Maps in the same time, diffuse and glossy; ISM has as few points as there are.
 TEST_F(command_line, bench_ism) {
     refuse(2, {"bench", "manylods-ism", "--images", folder / "none"}, "there is no such folder");

@@ -10,22 +10,20 @@ void put(uint at, uvec2 key, uint payload) {
 }
 
 void main() {
-    const uint tile = group_index(), items = push.count.at[0], tiles = sort_tiles(items, tile_items);
-    const uint digits = 1u << push.bits, begin = tile * tile_items;
+    const uint tile = group_index(), items = push.count.at[0], tiles = sort_tiles(items, tile_items), columns = sort_columns(tiles);
+    const uint digits = 1u << push.bits, begin = tile * tile_items, end = tile < tiles ? min(items, begin + tile_items) : 0u;
     if (plain_groups) {
-        if (tile >= tiles) return;
-        const uint end = min(items, begin + tile_items);
         for (uint i = begin; i < end; ++i) {
             const uvec2 key = key_at(i);
-            const uint counter = digit_of(key) * tiles + tile, at = push.counters.at[counter];
+            const uint counter = digit_of(key) * columns + tile, at = push.counters.at[counter];
             push.counters.at[counter] = at + 1u;
             put(at, key, push.payload_in.at[i]);
         }
         return;
     }
-    const uint mine = gl_SubgroupID * digits, end = tile < tiles ? min(items, begin + tile_items) : 0u;
+    const uint mine = gl_SubgroupID * digits;
     if (tile < tiles)
-        for (uint d = group_lane(); d < digits; d += group_size()) counters[mine + d] = push.counters.at[d * tiles + tile];
+        for (uint d = group_lane(); d < digits; d += group_size()) counters[mine + d] = push.counters.at[d * columns + tile];
     // As many rounds in every group, whatever it has to do, for group_sync's sake.
     for (uint round = 0u; round < tile_items; round += group_size()) {
         group_sync();

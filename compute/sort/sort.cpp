@@ -1,5 +1,8 @@
 #include "compute/sort/sort.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "compute/kernels.hpp"
 
 namespace myriad::compute {
@@ -8,30 +11,26 @@ using engine::compute_kernels;
 
 namespace {
 
-// Kernels are made for the largest workgroup that they may have, so that the host knows how many groups share its memory.
-constexpr uint32_t workgroup_size = 64;
-
-uint64_t counters_for(uint64_t length, const SortShape& shape) { return uint64_t(sort_tiles(uint(length), shape.tile)) << shape.digit_bits; }
+uint64_t counters_for(uint64_t length, const SortShape& shape) { return uint64_t(sort_columns(sort_tiles(uint(length), shape.tile))) << shape.digit_bits; }
 
 engine::Constants constants(const engine::Device& device, uint32_t key_bits, const SortShape& shape) {
-    const uint32_t groups = shape.lone_lanes ? 0 : (workgroup_size + device.group_size() - 1) / device.group_size();
-    return {{0, workgroup_size}, {1, shape.lone_lanes}, {2, key_bits / 32}, {3, shape.tile}, {4, std::max(1u, groups << shape.digit_bits)}};
+    const uint32_t groups = shape.lone_lanes ? 0 : (shape.workgroup_size() + device.group_size() - 1) / device.group_size();
+    return {{0, shape.workgroup_size()}, {1, shape.lone_lanes}, {2, key_bits / 32}, {3, shape.tile}, {4, std::max(1u, groups << shape.digit_bits)}};
 }
 
 }  // namespace
 
 SortShape SortShape::of(const engine::Device& device) {
-    if (device.plain_groups() || device.info().type == "cpu") return {.lone_lanes = true, .digit_bits = 8, .tile = 2048};
+    if (device.plain_groups() || device.info().type == "cpu") return {.lone_lanes = true, .digit_bits = 8, .tile = 2064};
     return {.lone_lanes = false, .digit_bits = 8, .tile = 1024};
 }
 
 std::vector<SortShape> SortShape::all(const engine::Device& device) {
     std::vector<SortShape> shapes;
-    for (uint32_t digit_bits : {4, 8, 11})
-        for (uint32_t tile : {1024, 2048, 4096, 8192, 16384}) shapes.push_back({.lone_lanes = true, .digit_bits = digit_bits, .tile = tile});
+    for (uint32_t digit_bits : {4, 6, 8, 11})
+        for (uint32_t tile : {1040, 2064, 4112}) shapes.push_back({.lone_lanes = true, .digit_bits = digit_bits, .tile = tile});
     if (!device.plain_groups())
-        for (uint32_t digit_bits : {4, 6, 8})
-            for (uint32_t tile : {1024, 2048, 4096}) shapes.push_back({.lone_lanes = false, .digit_bits = digit_bits, .tile = tile});
+        for (uint32_t digit_bits : {4, 8}) shapes.push_back({.lone_lanes = false, .digit_bits = digit_bits, .tile = 1024});
     return shapes;
 }
 
@@ -49,6 +48,12 @@ Sort::Sort(engine::Device& device, uint64_t max_length, uint32_t key_bits, std::
     else wide_keys_ = {device, "sort", "sort keys", max_length};
 }
 
+// No digit is in two words, so that counting reads one.
+uint32_t Sort::passes(uint32_t bits, const SortShape& shape) {
+    const auto of_word = [&](uint32_t b) { return (b + shape.digit_bits - 1) / shape.digit_bits; };
+    return bits <= 32 ? of_word(bits) : of_word(32) + of_word(bits - 32);
+}
+
 template <class Key>
 Sort::Sorted<Key> Sort::passes_over(engine::Recorder& recorder, const engine::Array<Key>& keys, const engine::Array<Key>& spare_keys,
                                     const engine::Array<uint>& payload, const engine::Array<uint>& length, uint64_t length_index, uint32_t bits) {
@@ -60,37 +65,33 @@ Sort::Sorted<Key> Sort::passes_over(engine::Recorder& recorder, const engine::Ar
                                     .counts = recorder.write(counts_),
                                     .max_length = uint(max_length_),
                                     .tile = shape_.tile,
-                                    .workgroup_size = workgroup_size,
-                                    .group_size = shape_.lone_lanes ? 1 : recorder.device().group_size()},
+                                    .workgroup_size = shape_.workgroup_size(),
+                                    .group_size = shape_.group_size(recorder.device())},
                       1);
     const engine::Array<Key>*from = &keys, *to = &spare_keys;
     const engine::Array<uint>*payload_from = &payload, *payload_to = &payload_;
-    uint32_t shift = 0;
-    for (uint32_t left = passes(bits, shape_); left > 0; --left) {
-        const uint32_t digit = (bits - shift + left - 1) / left;  // evenly
-        const auto push = [&] {
-            return SortPassPush{.keys_in = {recorder.read(*from).address},
-                                .payload_in = recorder.read(*payload_from),
-                                .keys_out = {recorder.write(*to).address},
-                                .payload_out = recorder.write(*payload_to),
-                                .counters = recorder.write(counters_),
-                                .count = recorder.read(counts_, sort_count_items),
-                                .shift = shift,
-                                .bits = digit};
-        };
-        SortPassPush counting{.keys_in = {recorder.read(*from).address},
-                              .payload_in = {},
-                              .keys_out = {},
-                              .payload_out = {},
-                              .counters = recorder.write(counters_),
-                              .count = recorder.read(counts_, sort_count_items),
-                              .shift = shift,
-                              .bits = digit};
-        recorder.dispatch_indirect(count_, counting, args_);
-        scan_.record(recorder, counters_, counts_, digit);
-        recorder.dispatch_indirect(scatter_, push(), args_);
-        std::swap(from, to), std::swap(payload_from, payload_to);
-        shift += digit;
+    for (uint32_t word = 0; 32 * word < bits; ++word) {
+        const uint32_t word_bits = std::min(32u, bits - 32 * word);
+        uint32_t shift = 0;
+        for (uint32_t left = passes(word_bits, shape_); left > 0; --left) {
+            const uint32_t digit = (word_bits - shift + left - 1) / left;  // evenly
+            const auto push = [&](bool scatters) {
+                return SortPassPush{.keys_in = {recorder.read(*from).address},
+                                    .payload_in = scatters ? recorder.read(*payload_from) : Uints{},
+                                    .keys_out = {scatters ? recorder.write(*to).address : 0},
+                                    .payload_out = scatters ? recorder.write(*payload_to) : Uints{},
+                                    .counters = recorder.write(counters_),
+                                    .count = recorder.read(counts_, sort_count_items),
+                                    .word = word,
+                                    .shift = shift,
+                                    .bits = digit};
+            };
+            recorder.dispatch_indirect(count_, push(false), args_);
+            scan_.record(recorder, counters_, counts_, digit);
+            recorder.dispatch_indirect(scatter_, push(true), args_);
+            std::swap(from, to), std::swap(payload_from, payload_to);
+            shift += digit;
+        }
     }
     return {*from, *payload_from};
 }

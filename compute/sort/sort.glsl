@@ -24,6 +24,8 @@ void group_sync() {
 }
 
 uvec2 key_at(uint i) { return key_words == 2u ? Uint2s(push.keys_in).at[i] : uvec2(push.keys_in.at[i], 0u); }
-uint digit_of(uvec2 key) { return sort_digit(key.x, key.y, push.shift, push.bits); }
+uint digit_in(uint word) { return word >> push.shift & (1u << push.bits) - 1u; }
+uint digit_of(uvec2 key) { return digit_in(push.word == 0u ? key.x : key.y); }
+uint digit_at(uint i) { return digit_in(push.keys_in.at[i * key_words + push.word]); }  // reads no more than the digit's word
 
 #endif

@@ -16,6 +16,9 @@ struct SortShape {
     uint tile;                 // items
 
     bool operator==(const SortShape&) const = default;
+    // Lone lanes share nothing: small workgroups keep all cores of a CPU busy with short lists. A line of counters has as many columns.
+    uint32_t workgroup_size() const { return lone_lanes ? 16 : 64; }
+    uint32_t group_size(const engine::Device& device) const { return lone_lanes ? 1 : device.group_size(); }
 
     static SortShape of(const engine::Device& device);
     // Those to choose from, for measurements.
@@ -45,7 +48,7 @@ public:
                          const engine::Array<uint>& length, uint64_t length_index = 0, uint32_t bits = 64);
 
     uint64_t max_length() const { return max_length_; }
-    static uint32_t passes(uint32_t bits, const SortShape& shape) { return (bits + shape.digit_bits - 1) / shape.digit_bits; }
+    static uint32_t passes(uint32_t bits, const SortShape& shape);
     // Device bytes of its own.
     uint64_t bytes() const { return keys_.bytes() + wide_keys_.bytes() + payload_.bytes() + counters_.bytes(); }
 

@@ -81,16 +81,16 @@ TEST_F(SortTest, twin_sorts_a_hand_made_list) {
                      sort_ref({{0x12, 0}, {0x10, 1}, {0x21, 2}, {0x01, 3}, {0, 9}}, 4, 4)));
 }
 
-TEST_F(SortTest, digits_across_the_words) {
-    const uint low = 0xfedcba98, high = 0x76543210;
-    const uint64_t key = uint64_t(high) << 32 | low;
-    for (uint bits = 1; bits <= sort_max_digit_bits; ++bits)
-        for (uint shift = 0; shift + bits <= 64; ++shift) ASSERT_EQ(sort_digit(low, high, shift, bits), key >> shift & ((1u << bits) - 1));
+TEST_F(SortTest, passes_keep_to_words) {
+    const SortShape bytes{.lone_lanes = true, .digit_bits = 8, .tile = 64};
+    const std::pair<uint32_t, uint32_t> expected[] = {{0, 0}, {1, 1}, {8, 1}, {9, 2}, {32, 4}, {33, 5}, {63, 8}, {64, 8}};
+    for (const auto& [bits, passes] : expected) EXPECT_EQ(Sort::passes(bits, bytes), passes) << bits << " bits";
+    EXPECT_EQ(Sort::passes(35, lone), 8u);  // 32 bits by 5, and 3
 }
 
 TEST_F(SortTest, equals_the_twin_at_boundary_sizes) {
     for (size_t n : {0, 1, 2, 7, 8, 9, 63, 64, 65, 127, 128, 129, 1000, 4095, 4096, 4097}) check(random_keys(n), 64, "random");
-    for (size_t n : {1023, 1024, 1025, 2047, 2048, 2049, 20000, 131071, 131072, 131073}) check(random_keys(n), 64, "random", false);
+    for (size_t n : {1023, 1024, 1025, 2063, 2064, 2065, 20000, 16 * 2064 - 1, 16 * 2064, 16 * 2064 + 1, 131073}) check(random_keys(n), 64, "random", false);
 }
 
 TEST_F(SortTest, a_million) { check(random_keys(1 << 20), 63, "random", false); }

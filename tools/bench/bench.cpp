@@ -42,7 +42,8 @@ const std::vector<Bench>& benches() {
          {"--animation", "--frames", "--csv", "--plot", "--arity"}},
         {"manylods-ism", "imperfect shadow maps with the points a map that take ManyLoDs' time, diffuse and glossy", bench_equal_time, {"--images", "--arity"}},
         {"manylods-arity", "trees of arity 2, 4 and 8: what they take, to refit and to be cut, from the roots and from the frame before", bench_arity},
-        {"sort", "radix sorts of keys with payload: the device's, in several shapes, against the host's", bench_sort},
+        {"sort", "radix sorts of keys with payload: the device's, in several shapes, against the host's", bench_sort, {"--items"}},
+        {"octree", "a sparse octree over points of a scene's surface, built on the device and on the host", bench_octree, {"--depth"}},
         {"stability", "a scene scaled, far from the origin, and on a floor that is much larger: where images suffer", bench_stability, {"--arity"}},
     };
     return all;
@@ -113,6 +114,8 @@ void add_bench(CLI::App& app) {
     bench->add_option("--seed", o.seed, "seed (1)");
     bench->add_option("--animation", o.animation, "manylods-fig8: the clip that plays, by name or index (the first)");
     bench->add_option("--frames", o.frames, "manylods-fig8: of the clip, 1/24 s each (48)")->check(CLI::Range(1u, 100000u));
+    bench->add_option("--items", o.items, "sort: numbers of keys, separated by commas (65536,1048576,4194304)")->delimiter(',')->check(CLI::Range(1u, 1u << 26));
+    bench->add_option("--depth", o.depth, "octree: levels below the root (11)")->check(CLI::Range(0u, 21u));
     bench->add_option("--csv", o.csv, "manylods-fig8: write a line for each frame");
     bench->add_option("--plot", o.plot, "manylods-fig8: draw the cuts' times over the frames, as SVG");
     bench->add_option("--images", o.images, "manylods-ism: a folder for the images that are compared, as EXR and PNG");

@@ -49,6 +49,8 @@ struct BenchOptions {
     // Of some experiments only (Bench::own):
     std::string animation;          // empty: the first clip
     uint32_t frames = 48;
+    std::vector<uint32_t> items;    // empty: the experiment's own
+    uint32_t depth = 11;            // of an octree
     std::string csv, plot, images;  // empty: not written
 };
 
@@ -75,6 +77,8 @@ void bench_fig8(engine::Device& device, const BenchOptions& options, const RowSi
 void bench_arity(engine::Device& device, const BenchOptions& options, const RowSink& sink);
 // bench/equal_time.cpp
 void bench_equal_time(engine::Device& device, const BenchOptions& options, const RowSink& sink);
+// bench/octree.cpp
+void bench_octree(engine::Device& device, const BenchOptions& options, const RowSink& sink);
 // bench/sort.cpp
 void bench_sort(engine::Device& device, const BenchOptions& options, const RowSink& sink);
 // bench/stability.cpp

@@ -1,6 +1,6 @@
 // `myriad bench sort`: the device's radix sort (compute/sort) in the shapes that it can have, against the host's radix sort and the library's
 // stable sort. Random keys; every row's result is compared with the library's before it is timed. A `copy` row moves as many bytes as a pass of the
-// device's sort must: the counter `times_floor` is the sort's time over that of as many copies as it has passes.
+// device's sort must: the counter `times_copy` is the sort's time over that of as many copies as it has passes.
 #include <algorithm>
 #include <chrono>
 #include <random>
@@ -116,7 +116,7 @@ struct Experiment {
             else verify(engine::download(device, result.keys, n), engine::download(device, result.payload, n));
         }
         const uint32_t passes = compute::Sort::passes(key_bits, shape);
-        r.counters = {{"Mitems/s", double(n) / r.ms.median() / 1000}, {"passes", passes}, {"times_floor", r.ms.median() / (passes * copy_ms)}};
+        r.counters = {{"Mitems/s", double(n) / r.ms.median() / 1000}, {"passes", passes}, {"times_copy", r.ms.median() / (passes * copy_ms)}};
         r.bytes = {{"pairs", 0}, {"atlas", 0}, {"sort", sort.bytes()}};
         sink(r);
     }
@@ -127,7 +127,7 @@ struct Experiment {
                 throw Error(Error::Kind::check_failed, "the device's order differs from the stable sort's at item " + std::to_string(i));
     }
 
-    void run(uint64_t count, bool all_shapes) {
+    void run(uint32_t count, bool all_shapes) {
         std::mt19937_64 random(options.seed);
         for (uint32_t i = 0; i < count; ++i) items.push_back({random() >> (64 - key_bits), i});
         host("native-stable-sort", [](auto& mine) { std::ranges::stable_sort(mine, {}, &Item::key); });
@@ -144,8 +144,9 @@ struct Experiment {
 }  // namespace
 
 void bench_sort(engine::Device& device, const BenchOptions& options, const RowSink& sink) {
-    for (const uint64_t count : {uint64_t(1) << 16, uint64_t(1) << 20, uint64_t(1) << 22}) {
-        const bool all_shapes = count == uint64_t(1) << 20;
+    const std::vector<uint32_t> counts = options.items.empty() ? std::vector<uint32_t>{1 << 16, 1 << 20, 1 << 22} : options.items;
+    for (const uint32_t count : counts) {
+        const bool all_shapes = count == 1 << 20;
         Experiment<uint>{device, options, sink, {}, {}}.run(count, all_shapes);
         Experiment<uvec2>{device, options, sink, {}, {}}.run(count, all_shapes);
     }

@@ -1,0 +1,187 @@
+// `myriad bench octree`: the octree over points on the scene's surface, built on the device (compute/octree) and native on the host. The host's tree is
+// compared with the device's before anything is timed. Stages: `keys` from points, `sort`, `nodes` of all levels, and `merge`, the plainest one: how many items
+// are below each node. `ms` is the first three.
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+
+#include "compute/common/radix_sort.hpp"
+#include "compute/kernels.hpp"
+#include "compute/octree/octree.hpp"
+#include "compute/surface_sampling/surface_sampling.hpp"
+#include "engine/transfer.hpp"
+#include "passes/geometry/geometry.hpp"
+#include "scenes/sky.hpp"
+#include "tools/bench/maps_bench.hpp"
+
+namespace myriad::tools {
+namespace {
+
+double ms_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+struct Item {
+    uint64_t key;
+    uint index;
+};
+
+struct NativeOctree {
+    std::vector<uint> level_first, first;
+    std::vector<uint64_t> keys;
+    std::vector<Item> items;
+};
+
+struct Experiment {
+    engine::Device& device;
+    const BenchOptions& options;
+    const RowSink& sink;
+    const std::vector<vec4>& points;
+    OctreeCube cube;
+
+    BenchRow row(const char* technique) const {
+        BenchRow r;
+        r.bench = "octree";
+        r.scene = std::filesystem::path(options.scene.empty() ? "builtin:atrium" : options.scene).filename().string();
+        r.technique = technique;
+        r.settings = {{"samples", points.size()}, {"levels", options.depth}};
+        return r;
+    }
+
+    // Sorted with all cores, then one pass over the keys with one; levels are put behind each other at the end.
+    NativeOctree native() const {
+        BenchRow r = row("native-octree");
+        NativeOctree tree;
+        const uint depth = options.depth;
+        for (uint32_t run = 0; run <= options.repeats; ++run) {
+            const auto start = std::chrono::steady_clock::now();
+            std::vector<Item> items(points.size());
+            engine::parallel_pieces(items.size(), 1 << 14, [&](size_t begin, size_t end) {
+                for (size_t i = begin; i < end; ++i) {
+                    const uvec2 key = octree_key(octree_cell(points[i], cube, depth));
+                    items[i] = {uint64_t(key.y) << 32 | key.x, uint(i)};
+                }
+            });
+            const double keys_ms = ms_since(start);
+            compute::radix_sort(items, [](const Item& i) { return i.key; }, 0, int(3 * depth));
+            const double sorted_ms = ms_since(start);
+            std::vector<std::vector<uint64_t>> keys(depth + 1);
+            std::vector<std::vector<uint>> first(depth + 1);  // within the level below
+            for (size_t i = 0; i < items.size(); ++i) {
+                const uint64_t key = items[i].key, changed = i ? key ^ items[i - 1].key : ~uint64_t(0);
+                for (uint level = depth + 1; level-- > 0 && changed >> 3 * (depth - level);) {
+                    first[level].push_back(level == depth ? uint(i) : uint(keys[level + 1].size()) - 1);
+                    keys[level].push_back(key >> 3 * (depth - level));
+                }
+            }
+            tree = {};
+            uint below = 0;
+            for (uint level = 0; level <= depth; ++level) {
+                tree.level_first.push_back(below);
+                below += uint(keys[level].size());
+                for (const uint child : first[level]) tree.first.push_back(below + child);
+                tree.keys.insert(tree.keys.end(), keys[level].begin(), keys[level].end());
+            }
+            tree.first.push_back(below + uint(items.size()));
+            const double whole_ms = ms_since(start);
+            tree.items = std::move(items);
+            if (run == 0) continue;
+            r.ms.ms.push_back(whole_ms);
+            r.stages["keys"].ms.push_back(keys_ms);
+            r.stages["sort"].ms.push_back(sorted_ms - keys_ms);
+            r.stages["nodes"].ms.push_back(whole_ms - sorted_ms);
+        }
+        r.counters = {{"nodes", double(tree.keys.size())}, {"Mitems/s", double(points.size()) / r.ms.median() / 1000}};
+        sink(r);
+        return tree;
+    }
+
+    void on_device(const NativeOctree& expected) const {
+        BenchRow r = row("octree");
+        const auto on = engine::upload(device, "bench", "bench points", points);
+        const auto count = engine::upload(device, "bench", "bench count", std::vector<uint>{uint(points.size())});
+        const engine::Program tally_program(device, engine::compute_kernels, "octree/tally");
+        device.reset_memory_peaks();
+        uint64_t capacity = 2 * points.size();
+        auto octree = std::make_unique<compute::Octree>(device, points.size(), capacity, options.depth);
+        engine::Array<uint> tally(device, "bench", "tally", capacity);
+        engine::Recorder recorder(device);
+        for (uint32_t run = 0; run <= options.repeats;) {
+            {
+                auto scope = recorder.scope("octree keys");
+                octree->record_keys(recorder, on, count, 0, cube);
+            }
+            octree->record(recorder, count);
+            {
+                auto scope = recorder.scope("octree merge");
+                octree->bottom_up(recorder, tally_program, [&](uint level) {
+                    const OctreeRef ref = octree->read(recorder);
+                    return OctreeTallyPush{.first = ref.first, .tally = recorder.write(tally), .state = ref.state, .level = level, .leaves = level == options.depth};
+                });
+            }
+            octree->end(recorder);
+            recorder.submit_and_wait();
+            const auto times = recorder.take_times();
+            if (!octree->report().ok()) {  // longer, and again
+                capacity = octree->report().needed();
+                octree.reset();
+                octree = std::make_unique<compute::Octree>(device, points.size(), capacity, options.depth);
+                tally = {device, "bench", "tally", capacity};
+                continue;
+            }
+            if (run == 0) verify(*octree, engine::download(device, tally, 1)[0], expected);
+            if (run++ == 0) continue;
+            double total = 0;
+            for (const engine::PassTime& t : times) {
+                const std::string stage = t.name.substr(std::string("octree ").size());
+                r.stages[stage].ms.push_back(t.gpu_ms);
+                if (stage != "merge") total += t.gpu_ms;
+            }
+            r.ms.ms.push_back(total);
+        }
+        const OctreeState state = octree->report().state;
+        const uint leaves = state.count[options.depth];
+        r.counters = {{"nodes", double(state.needed)}, {"leaves", leaves}, {"items_per_leaf", double(points.size()) / leaves},
+                      {"Mitems/s", double(points.size()) / r.ms.median() / 1000}};
+        for (uint level = 0; level <= options.depth; ++level) r.counters["nodes_" + std::to_string(level / 10) + std::to_string(level % 10)] = state.count[level];
+        set_bytes(r, device);
+        r.bytes["tree"] = uint64_t(state.needed) * (sizeof(uint) + sizeof(uvec2));
+        sink(r);
+    }
+
+    void verify(const compute::Octree& octree, uint tally, const NativeOctree& expected) const {
+        const OctreeState state = octree.report().state;
+        bool equal = state.needed == expected.keys.size() && tally == points.size() && engine::download(device, octree.first(), expected.first.size()) == expected.first;
+        for (uint level = 0; level <= options.depth; ++level) equal = equal && state.first[level] == expected.level_first[level];
+        const auto keys = engine::download(device, octree.keys(), expected.keys.size());
+        for (size_t i = 0; equal && i < keys.size(); ++i) equal = (uint64_t(keys[i].y) << 32 | keys[i].x) == expected.keys[i];
+        const auto items = engine::download(device, octree.sorted_items(), points.size());
+        for (size_t i = 0; equal && i < items.size(); ++i) equal = items[i] == expected.items[i].index;
+        if (!equal) throw Error(Error::Kind::check_failed, "the device's octree differs from the native one");
+    }
+};
+
+}  // namespace
+
+void bench_octree(engine::Device& device, const BenchOptions& options, const RowSink& sink) {
+    const std::string source = options.scene.empty() ? "builtin:atrium" : options.scene;
+    scenes::Scene scene = scenes::load(source, options.seed);
+    const scenes::Triangles triangles = scenes::flatten(scene);
+    const passes::GeometryData data = passes::geometry_data(scene, triangles);
+    const compute::SurfaceSampling sampling = compute::sample_surface(data.world, options.log2_samples, options.seed);
+    if (sampling.empty()) throw InputError("\"" + source + "\" has no surface to sample; give another --scene");
+    std::vector<vec4> points;
+    vec3 least(INFINITY), most(-INFINITY);
+    for (const SurfaceSample& s : sampling.samples) {
+        const Corners c = data.world.corners(s.triangle);
+        const vec3 p = (1 - s.u - s.v) * c.p0 + s.u * c.p1 + s.v * c.p2;
+        points.emplace_back(p, 0);
+        least = min(least, p), most = max(most, p);
+    }
+    std::printf("scene: %s, %zu points, %u levels below the root\n", source.c_str(), points.size(), options.depth);
+    const Experiment e{device, options, sink, points, compute::octree_cube(least, most, options.depth)};
+    e.on_device(e.native());
+}
+
+}  // namespace myriad::tools
