@@ -63,12 +63,13 @@ MYRIAD_FN uvec2 octree_ancestor(uvec2 key, uint levels) {
     return uvec2(key.x >> shift | key.y << (32u - shift), key.y >> shift);
 }
 
-// The highest level (0: the root) at which two keys of leaves are in different cells; depth + 1 where they are the same.
+// The highest level (0: the root) at which two keys of leaves are in different cells; depth + 1 where they are the same. Keys that are none, being too large,
+// part at the root: nothing reaches out of a table of levels.
 MYRIAD_FN uint octree_parting(uvec2 a, uvec2 b, uint depth) {
     const uint high = a.y ^ b.y, low = a.x ^ b.x;
     if ((high | low) == 0u) return depth + 1u;
     const uint bit = high != 0u ? 32u + uint(findMSB(high)) : uint(findMSB(low));
-    return depth - bit / 3u;
+    return depth - min(bit / 3u, depth);
 }
 MYRIAD_END
 
