@@ -116,6 +116,12 @@ TEST_F(command_line, bench_octree) {
     EXPECT_GT(rows[1]["counters"]["nodes"], 2 * 512);
     EXPECT_EQ(rows[1]["counters"]["nodes_00"], 1);
     EXPECT_EQ(rows[1]["counters"]["nodes_21"], rows[1]["counters"]["leaves"]);
+    succeed({"bench", "octree", "--scene", "builtin:cornell", "--samples", "5", "--depth", "6", "--repeat", "2", "--json", folder / "cells.json"});
+    const auto cells = rows_of(folder / "cells.json");
+    ASSERT_EQ(cells.size(), 3u);
+    EXPECT_EQ(cells[2]["technique"], "octree-triangles");
+    EXPECT_GT(cells[2]["counters"]["pairs"], cells[2]["counters"]["leaves"]);
+    EXPECT_GT(cells[2]["counters"]["nodes"], cells[2]["counters"]["leaves"]);
 }
 
 // Maps in the same time, diffuse and glossy; ISM has as few points as there are.

@@ -1,7 +1,9 @@
 // `myriad bench octree`: the octree over points on the scene's surface, built on the device (compute/octree) and native on the host. The host's tree is
 // compared with the device's before anything is timed. Stages: `keys` from points, `sort`, `nodes` of all levels, and `merge`, the plainest one: how many items
-// are below each node. `ms` is the first three.
+// are below each node. `ms` is the first three. The row `octree-triangles` builds the tree of all cells that triangles meet (compute/voxels), which must be those that
+// a recursion on the host finds; its stage `voxels` is that search. `ms` is all four.
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <memory>
@@ -10,6 +12,7 @@
 #include "compute/kernels.hpp"
 #include "compute/octree/octree.hpp"
 #include "compute/surface_sampling/surface_sampling.hpp"
+#include "compute/voxels/voxels.hpp"
 #include "engine/transfer.hpp"
 #include "passes/geometry/geometry.hpp"
 #include "scenes/sky.hpp"
@@ -162,6 +165,108 @@ struct Experiment {
     }
 };
 
+// The same for the same set of pairs, whatever the order: a sum of hashes (splitmix64).
+uint64_t pair_hash(uvec2 pair) {
+    uint64_t x = uint64_t(pair.y) << 32 | pair.x;
+    x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
+    x = (x ^ x >> 27) * 0x94d049bb133111ebu;
+    return x ^ x >> 31;
+}
+
+// Cells that a scene's triangles meet.
+struct TriangleExperiment {
+    engine::Device& device;
+    const BenchOptions& options;
+    const RowSink& sink;
+    const compute::WorldTriangles& world;
+    const passes::Geometry& geometry;
+    OctreeCube cube;
+
+    struct Pairs {
+        std::atomic<uint64_t> count = 0, hash = 0;
+    };
+    void descend(const VoxelTriangle& t, uvec2 key, uint level, uint triangle, uint64_t& count, uint64_t& hash) const {
+        for (uint found = voxel_children(t, key, level, options.depth); found; found &= found - 1) {
+            const uvec2 child = voxel_child_key(key, uint(__builtin_ctz(found)));
+            if (level + 1 < options.depth) descend(t, child, level + 1, triangle, count, hash);
+            else ++count, hash += pair_hash(voxel_pack(child, triangle));
+        }
+    }
+    void on_host(Pairs& pairs) const {
+        engine::parallel_pieces(world.count(), 1 << 10, [&](size_t begin, size_t end) {
+            uint64_t count = 0, hash = 0;
+            world.for_each(uint32_t(begin), uint32_t(end),
+                           [&](uint32_t id, uint32_t, const Corners& c) { descend(voxel_triangle(c, cube, options.depth), uvec2(0), 0, id, count, hash); });
+            pairs.count += count, pairs.hash += hash;
+        });
+    }
+
+    void run() const {
+        BenchRow r;
+        r.bench = "octree";
+        r.scene = std::filesystem::path(options.scene.empty() ? "builtin:atrium" : options.scene).filename().string();
+        r.technique = "octree-triangles";
+        r.settings = {{"triangles", world.count()}, {"levels", options.depth}};
+        Pairs expected;
+        on_host(expected);
+        const auto count = engine::upload(device, "bench", "bench count", std::vector<uint>{world.count()});
+        const compute::VoxelTriangles triangles{geometry.positions(), geometry.triangles(), geometry.instances(), uint32_t(world.instances.size())};
+        device.reset_memory_peaks();
+        uint64_t next = 2 * uint64_t(world.count()), kept = next, nodes = next;
+        std::unique_ptr<compute::Voxels> voxels;
+        std::unique_ptr<compute::Octree> octree;
+        engine::Recorder recorder(device);
+        for (uint32_t run = 0; run <= options.repeats;) {
+            if (!voxels) {
+                if (std::max({next, kept, nodes}) > compute::AppendLists::max_capacity)
+                    throw InputError("so many cells are met that lists cannot hold them; give a smaller --depth");
+                octree.reset();
+                voxels = std::make_unique<compute::Voxels>(device, compute::AppendMode::scan, options.depth, next, kept, world.constants());
+                octree = std::make_unique<compute::Octree>(device, kept, nodes, options.depth);
+            }
+            {
+                auto scope = recorder.scope("octree voxels");
+                voxels->record(recorder, triangles, count, 0, world.count(), cube);
+            }
+            {
+                auto scope = recorder.scope("octree keys");
+                voxels->record_items(recorder, *octree);
+            }
+            octree->record(recorder, voxels->lists().state(), compute::AppendLists::kept_word);
+            octree->end(recorder);
+            recorder.submit_and_wait();
+            const auto times = recorder.take_times();
+            const compute::AppendReport report = voxels->lists().report();
+            if (!report.ok() || !octree->report().ok()) {  // longer, and again
+                next = std::max(next, report.next_needed), kept = std::max(kept, report.kept_needed), nodes = std::max(nodes, octree->report().needed());
+                voxels.reset();
+                continue;
+            }
+            if (run == 0) {
+                uint64_t hash = 0;
+                for (const uvec2 pair : engine::download(device, voxels->lists().kept(), report.kept)) hash += pair_hash(pair);
+                if (report.kept != expected.count || hash != expected.hash)
+                    throw Error(Error::Kind::check_failed, "the cells that triangles meet differ from those that the host finds");
+            }
+            if (run++ == 0) continue;
+            double total = 0;
+            for (const engine::PassTime& t : times) {
+                r.stages[t.name.substr(std::string("octree ").size())].ms.push_back(t.gpu_ms);
+                total += t.gpu_ms;
+            }
+            r.ms.ms.push_back(total);
+        }
+        const compute::AppendReport report = voxels->lists().report();
+        const OctreeState state = octree->report().state;
+        const uint leaves = state.count[options.depth];
+        r.counters = {{"pairs", double(report.kept)}, {"pairs_processed", double(report.processed)}, {"nodes", double(state.needed)}, {"leaves", leaves},
+                      {"Mpairs_processed/s", double(report.processed) / r.stages["voxels"].median() / 1000}};
+        set_bytes(r, device);
+        r.bytes["tree"] = uint64_t(state.needed) * (sizeof(uint) + sizeof(uvec2));
+        sink(r);
+    }
+};
+
 }  // namespace
 
 void bench_octree(engine::Device& device, const BenchOptions& options, const RowSink& sink) {
@@ -172,16 +277,25 @@ void bench_octree(engine::Device& device, const BenchOptions& options, const Row
     const compute::SurfaceSampling sampling = compute::sample_surface(data.world, options.log2_samples, options.seed);
     if (sampling.empty()) throw InputError("\"" + source + "\" has no surface to sample; give another --scene");
     std::vector<vec4> points;
-    vec3 least(INFINITY), most(-INFINITY);
     for (const SurfaceSample& s : sampling.samples) {
         const Corners c = data.world.corners(s.triangle);
-        const vec3 p = (1 - s.u - s.v) * c.p0 + s.u * c.p1 + s.v * c.p2;
-        points.emplace_back(p, 0);
-        least = min(least, p), most = max(most, p);
+        points.emplace_back((1 - s.u - s.v) * c.p0 + s.u * c.p1 + s.v * c.p2, 0);
     }
+    vec3 least(INFINITY), most(-INFINITY);
+    data.world.for_each([&](uint32_t, uint32_t, const Corners& c) {
+        if (!voxel_is_finite(c.p0) || !voxel_is_finite(c.p1) || !voxel_is_finite(c.p2)) return;
+        least = min(least, min(c.p0, min(c.p1, c.p2))), most = max(most, max(c.p0, max(c.p1, c.p2)));
+    });
+    const OctreeCube cube = compute::octree_cube(least, most, options.depth);
     std::printf("scene: %s, %zu points, %u levels below the root\n", source.c_str(), points.size(), options.depth);
-    const Experiment e{device, options, sink, points, compute::octree_cube(least, most, options.depth)};
+    const Experiment e{device, options, sink, points, cube};
     e.on_device(e.native());
+    if (options.depth < 1 || options.depth > voxels_max_depth) {
+        std::printf("no tree of triangles: that takes 1 to %u levels\n", voxels_max_depth);
+        return;
+    }
+    const passes::Geometry geometry(device, triangles, data);
+    TriangleExperiment{device, options, sink, data.world, geometry, cube}.run();
 }
 
 }  // namespace myriad::tools
