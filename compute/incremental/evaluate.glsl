@@ -18,9 +18,9 @@ void count_members(int change) {
 }
 
 // Where a node goes, and what slack it leaves the block.
-uint look(inout Evaluation e, View view, Sphere s, uint height) {
+uint look(inout Evaluation e, vec3 towards, View view, Sphere s, uint height) {
     const uint where = classify(view, s, height, push.epsilon, push.map_size);
-    e.slack = slack_with(e.slack, view, s.center - view.position, s.radius, height, where, float(push.map_size) / push.epsilon);
+    e.slack = slack_with(e.slack, towards, view, s.center - view.position, s.radius, height, where, float(push.map_size) / push.epsilon);
     return where;
 }
 
@@ -51,17 +51,22 @@ Shift shift_of(uint block) {
 Evaluation evaluate(uint block, View view) {
     Evaluation e = Evaluation(0u, true, slack_begin(vec3(0.0f)));
     const uint height = bsh_height(bsh_arity * block, shape());
+    vec3 towards = unpack_towards(e.slack.towards);
     if (block != push.blocks) {  // the owner, which sits in the block above
         const uint owner = bsh_owner_of(block, shape());
         const Sphere s = bsh_decode(push.frames.at[owner >> bsh_arity_log2], push.spheres.at[owner]);
         e.slack = slack_begin(s.center - view.position);
-        e.open = look(e, view, s, height + 1u) == node_view_open;
+        towards = unpack_towards(e.slack.towards);
+        e.open = look(e, towards, view, s, height + 1u) == node_view_open;
     }
     if (!e.open) return e;
     const vec4 frame = push.frames.at[block];
-    for (uint i = 0u; i < bsh_arity; ++i) {
+    const uvec2 first = push.spheres.at[bsh_arity * block];
+    [[unroll]] for (uint i = 0u; i < bsh_arity; ++i) {
         const uvec2 code = push.spheres.at[bsh_arity * block + i];
-        if (!bsh_is_absent(code)) e.found |= node_view_bit(look(e, view, bsh_decode(frame, code), height)) << i;
+        const bool absent = bsh_is_absent(code);  // no slack has less for the first child looked at twice
+        const uint bit = node_view_bit(look(e, towards, view, bsh_decode(frame, absent ? first : code), height));
+        e.found |= (absent ? 0u : bit) << i;
     }
     return e;
 }

@@ -141,7 +141,7 @@ TEST_F(IncrementalTest, slack_is_not_exceeded_by_what_moves_less) {
             s.radius = length * (random() % 4 == 0 ? log_uniform(1e-6f, 2) : 2 / q * log_uniform(0.2f, 5));  // any, or about on the threshold
             heights.push_back(random() % 4);
             sides.push_back(classify(v, s, heights.back(), epsilon, uint(size)));
-            slack = slack_with(slack, v, d, s.radius, heights.back(), sides.back(), q);
+            slack = slack_with(slack, unpack_towards(slack.towards), v, d, s.radius, heights.back(), sides.back(), q);
         }
         Travel t{log_uniform(1e-6f, 10), log_uniform(1e-6f, 10), log_uniform(1e-6f, 10), travel_exists, v.position, vec3(0)};
         if (random() % 2) {  // on its way already
@@ -294,7 +294,8 @@ TEST_F(IncrementalTest, slack_of_parallel_views_is_not_exceeded_by_radii) {
         Sphere s{point(), v.sin_phi / q * (random() % 2 ? log_uniform(0.01f, 100) : uniform(0.9f, 1.1f))};
         const uint where = classify(v, s, height, epsilon, uint(size));
         ASSERT_NE(where, node_view_culled);
-        const Slack slack = slack_with(slack_begin(s.center), v, s.center - v.position, s.radius, height, where, q);
+        const Slack begun = slack_begin(s.center);
+        const Slack slack = slack_with(begun, unpack_towards(begun.towards), v, s.center - v.position, s.radius, height, where, q);
         Travel t{0, 0, 0, travel_exists | travel_moved, v.position, vec3(0)};
         Way way{log_uniform(1e-6f, 10), log_uniform(1e-6f, 1), 0};
         const Due due = due_after(t, way_length(way, q), slack);

@@ -130,12 +130,12 @@ MYRIAD_FN float travelled_criterion(Travel t, float way) {
 MYRIAD_FN uint pack_towards(vec3 d) {
     const float most = max(abs(d.x), max(abs(d.y), abs(d.z)));
     if (!(most > 1e-30f && most < 1e30f)) return 0u;
-    vec3 u = d / most;
-    u = 127.0f * (u / sqrt(dot(u, u))) + vec3(128.5f);
+    vec3 u = d * (1.0f / most);
+    u = u * (127.0f / sqrt(dot(u, u))) + vec3(128.5f);
     return uint(u.x) | (uint(u.y) << 8) | (uint(u.z) << 16);
 }
 MYRIAD_FN vec3 unpack_towards(uint code) {
-    return (vec3(float(code & 0xffu), float((code >> 8) & 0xffu), float((code >> 16) & 0xffu)) - vec3(128.0f)) / 127.0f;
+    return (vec3(float(code & 0xffu), float((code >> 8) & 0xffu), float((code >> 16) & 0xffu)) - vec3(128.0f)) * (1.0f / 127.0f);
 }
 const float deviation_unit = 0.01f;
 
@@ -167,8 +167,8 @@ MYRIAD_FN Slack slack_begin(vec3 towards) {
     return s;
 }
 
-// A node more.
-MYRIAD_FN Slack slack_with(Slack s, View view, vec3 d, float r, uint height, uint where, float q) {
+// A node more; u is unpack_towards(s.towards). Without branches but for kinds of views: on devices that mask lanes each would blend all of s.
+MYRIAD_FN Slack slack_with(Slack s, vec3 u, View view, vec3 d, float r, uint height, uint where, float q) {
     if (is_parallel(view)) {  // nothing is culled, and what is open depends on radii alone: sin_phi > q r where the node fits
         s.tangent = 0.0f;
         s.reach = 1e30f;
@@ -180,31 +180,29 @@ MYRIAD_FN Slack slack_with(Slack s, View view, vec3 d, float r, uint height, uin
     s.reach = max(s.reach, distance);
     const bool all_round = view.cos_phi < 0.0f && view.sin_phi == 0.0f;  // nothing is ever culled
     // The cull radius moves along with a node a little: less than 2^-10 of its way.
-    if (!all_round)
-        s.frustum = min(s.frustum, (abs(frustum_distance(view, d) - cull_radius(d, r, height)) - slack_rounding * reach) * (1.0f - 1.0f / 1024.0f));
-    if (where == node_view_culled || height == 0u) return s;
+    const float border = (abs(frustum_distance(view, d) - cull_radius(d, r, height)) - slack_rounding * reach) * (1.0f - 1.0f / 1024.0f);
+    s.frustum = min(s.frustum, all_round ? 1e30f : border);
+
+    const bool is_drawn = where == node_view_drawn && height != 0u;
+    const bool is_open = where == node_view_open && height != 0u;
+    const bool counts = is_drawn || is_open;
     const float tangent = sqrt(max(distance * distance - r * r, 0.0f));
+    const float inverse = 1.0f / tangent;
     const float x = abs(d.x);
     const float over = x + tangent - q * r;
     const float margin = slack_rounding * (reach + q * r);
-    float free = 0.0f;
-    if (where == node_view_drawn) free = over * (0.5f - 0.5f / (q * q));
-    else free = max(0.5f * (q * r - x - distance), 4.0f * tangent > distance ? -over * tangent / (tangent + distance) : 0.0f);
-    if (q < 2.0f) free = 0.0f;
-    s.any = min(s.any, free - margin);
+    const float below = 4.0f * tangent > distance ? -over * tangent / (tangent + distance) : 0.0f;
+    const float free = is_drawn ? over * (0.5f - 0.5f / (q * q)) : max(0.5f * (q * r - x - distance), below);
+    s.any = min(s.any, counts ? (q < 2.0f ? 0.0f : free) - margin : 1e30f);
 
-    const vec3 u = unpack_towards(s.towards);
     const bool beside = (d.x < 0.0f) == (u.x < 0.0f);  // on the owner's side
-    if (where == node_view_drawn) {
-        s.closed = min(s.closed, over - margin - (beside ? 0.0f : 2.0f * x));
-    } else {
-        s.open = min(s.open, -over - margin);
-        s.passed = min(s.passed, -over - margin + (beside ? 2.0f * x : 0.0f));
-    }
-    const vec3 apart = d / tangent - u;
-    s.deviation = max(s.deviation, sqrt(dot(apart, apart)));
-    s.tangent = min(s.tangent, tangent);
-    s.stretch = max(s.stretch, distance / tangent);
+    s.closed = min(s.closed, is_drawn ? over - margin - (beside ? 0.0f : 2.0f * x) : 1e30f);
+    s.open = min(s.open, is_open ? -over - margin : 1e30f);
+    s.passed = min(s.passed, is_open ? -over - margin + (beside ? 2.0f * x : 0.0f) : 1e30f);
+    const vec3 apart = d * inverse - u;
+    s.deviation = max(s.deviation, counts ? sqrt(dot(apart, apart)) : 0.0f);
+    s.tangent = min(s.tangent, counts ? tangent : 1e30f);
+    s.stretch = max(s.stretch, counts ? distance * inverse : 1.0f);
     return s;
 }
 
