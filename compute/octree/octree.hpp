@@ -44,7 +44,7 @@ public:
     const engine::Array<uint>& sorted_items() const { return *sorted_items_; }  // of the last record()
     // The state as words: nodes of a level are at count_word + level.
     const engine::Array<uint>& state() const { return state_; }
-    static constexpr uint64_t first_word = offsetof(OctreeState, first) / sizeof(uint), count_word = offsetof(OctreeState, count) / sizeof(uint);
+    static constexpr uint64_t count_word = offsetof(OctreeState, count) / sizeof(uint);
 
     // Runs `program` over the nodes of each level from the leaves up, one invocation a node, each level after the one below it: to merge what nodes hold. `push(level)`
     // returns its push constants; its reads and writes belong inside. Invocation i is for node state.first[level] + i, if i < state.count[level].
@@ -60,8 +60,6 @@ public:
 
     uint32_t depth() const { return depth_; }
     uint64_t max_items() const { return max_items_; }
-    uint64_t max_nodes() const { return max_nodes_; }
-    uint64_t bytes() const { return first_.bytes() + keys_.bytes(); }  // of the tree, without its items
 
 private:
     uint32_t depth_;

@@ -47,7 +47,6 @@ public:
     Sorted<uvec2> record(engine::Recorder& recorder, const engine::Array<uvec2>& keys, const engine::Array<uint>& payload,
                          const engine::Array<uint>& length, uint64_t length_index = 0, uint32_t bits = 64);
 
-    uint64_t max_length() const { return max_length_; }
     static uint32_t passes(uint32_t bits, const SortShape& shape);
     // Device bytes of its own.
     uint64_t bytes() const { return keys_.bytes() + wide_keys_.bytes() + payload_.bytes() + counters_.bytes(); }

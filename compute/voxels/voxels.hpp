@@ -30,7 +30,6 @@ public:
 
     // The pairs (voxel_key, voxel_triangle_of), their number, and the report of what it took. AppendLists::end() is done.
     const AppendLists& lists() const { return lists_; }
-    uint32_t depth() const { return depth_; }
 
 private:
     uint32_t depth_;

@@ -115,7 +115,7 @@ void add_bench(CLI::App& app) {
     bench->add_option("--animation", o.animation, "manylods-fig8: the clip that plays, by name or index (the first)");
     bench->add_option("--frames", o.frames, "manylods-fig8: of the clip, 1/24 s each (48)")->check(CLI::Range(1u, 100000u));
     bench->add_option("--items", o.items, "sort: numbers of keys, separated by commas (65536,1048576,4194304)")->delimiter(',')->check(CLI::Range(1u, 1u << 26));
-    bench->add_option("--depth", o.depth, "octree: levels below the root (11)")->check(CLI::Range(0u, 21u));
+    bench->add_option("--depth", o.depth, "octree: levels below the root (10)")->check(CLI::Range(0u, 21u));
     bench->add_option("--csv", o.csv, "manylods-fig8: write a line for each frame");
     bench->add_option("--plot", o.plot, "manylods-fig8: draw the cuts' times over the frames, as SVG");
     bench->add_option("--images", o.images, "manylods-ism: a folder for the images that are compared, as EXR and PNG");

@@ -50,7 +50,7 @@ struct BenchOptions {
     std::string animation;          // empty: the first clip
     uint32_t frames = 48;
     std::vector<uint32_t> items;    // empty: the experiment's own
-    uint32_t depth = 11;            // of an octree
+    uint32_t depth = 10;            // of an octree
     std::string csv, plot, images;  // empty: not written
 };
 

@@ -49,6 +49,7 @@ struct Experiment {
         r.scene = std::filesystem::path(options.scene.empty() ? "builtin:atrium" : options.scene).filename().string();
         r.technique = technique;
         r.settings = {{"samples", points.size()}, {"levels", options.depth}};
+        r.bytes = {{"pairs", 0}, {"atlas", 0}};
         return r;
     }
 
