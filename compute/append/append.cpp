@@ -110,6 +110,7 @@ AppendReport AppendLists::report() const {
     report.opened = uint64_t(s.opened[1]) << 32 | s.opened[0];
     report.next_overflowed = s.failed & append_next_overflow;
     report.kept_overflowed = s.failed & append_kept_overflow;
+    report.caller_overflowed = s.failed & append_caller_overflow;
     return report;
 }
 

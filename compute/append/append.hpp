@@ -27,8 +27,8 @@ private:
 // What the lists held and whether that fitted; read after the work that was recorded is done.
 struct AppendReport {
     uint64_t kept = 0, next_needed = 0, kept_needed = 0, processed = 0, opened = 0;
-    bool next_overflowed = false, kept_overflowed = false;
-    bool ok() const { return !next_overflowed && !kept_overflowed; }
+    bool next_overflowed = false, kept_overflowed = false, caller_overflowed = false;
+    bool ok() const { return !next_overflowed && !kept_overflowed && !caller_overflowed; }
 };
 
 // Steps over an active list, each of which fills the next active list (from empty) and adds to the kept list.

@@ -8,6 +8,7 @@ MYRIAD_BEGIN
 // Counts keep counting past the capacity; what does not fit is not written, the bit is set, and later steps do nothing.
 const uint append_next_overflow = 1u;
 const uint append_kept_overflow = 2u;
+const uint append_caller_overflow = 4u;  // set by a caller: what is made of the kept list does not fit (passes/fuse)
 
 struct AppendState {
     uint items;         // length of the active list, the list that this step reads
