@@ -23,9 +23,18 @@ GatherVisibility gather_visibility(Visibility v) {
     return v == Visibility::rays ? GatherVisibility::rays : v == Visibility::none ? GatherVisibility::none : GatherVisibility::maps;
 }
 
-MapSettings map_settings(const FrameSettings& settings) {
+MapMethod map_method(Visibility v, bool far) {
+    switch (v) {
+        case Visibility::brute: return MapMethod::brute;
+        case Visibility::ism: return MapMethod::ism;
+        case Visibility::megaviews: return far ? MapMethod::manylods : MapMethod::megaviews;  // parallel views have no place to be near to one another
+        default: return MapMethod::manylods;
+    }
+}
+
+MapSettings map_settings(const FrameSettings& settings, bool far) {
     MapSettings maps = settings.maps;
-    maps.method = settings.visibility == Visibility::brute ? MapMethod::brute : settings.visibility == Visibility::ism ? MapMethod::ism : MapMethod::manylods;
+    maps.method = map_method(settings.visibility, far);
     maps.seed = settings.seed;
     return maps;
 }
@@ -61,6 +70,7 @@ Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::T
     background_ = scene.background;
     const compute::WorldTriangles& world = derived.world();
     const glm::vec3 far = glm::max(glm::abs(triangles.lo), glm::abs(triangles.hi));
+    low_ = triangles.lo, high_ = triangles.hi;
     reach_ = std::max({far.x, far.y, far.z});
     const double area = total_area(world);
     vpl_bound_ = settings.vpl_bound > 0 ? settings.vpl_bound : area > 0 ? float(std::min(3.14159265 * settings.vpls / area, 1e30)) : 1e30f;
@@ -97,7 +107,7 @@ void Frame::make_lighting(const scenes::Scene& scene, compute::Derived& derived,
         vpl_->sure_paths(lights_, settings.bounces);  // throws when not one path fits
     }
     if (!vpl_ && far_lights == 0) return;
-    if (settings.visibility == Visibility::manylods) make_tree(derived);
+    if (settings.visibility == Visibility::manylods || settings.visibility == Visibility::megaviews) make_tree(derived);
     compute::SurfaceSampling sampling;
     if (settings.visibility == Visibility::ism) {
         sampling = step("sampling the surface", [&] { return derived.samples(settings.log2_samples, settings.seed); });
@@ -120,7 +130,7 @@ void Frame::make_tree(compute::Derived& derived) {
 Gathering Frame::make_gathering(uint32_t lights, bool far, const compute::WorldTriangles& world, const IsmScene& points) {
     const GatheringSettings settings{.visibility = gather_visibility(settings_.visibility), .width = settings_.width, .height = settings_.height,
                                      .lights = lights, .subset = settings_.subset, .filter = settings_.filter, .glossy = size_.glossy, .far = far,
-                                     .bias = settings_.bias, .maps = map_settings(settings_)};
+                                     .bias = settings_.bias, .maps = map_settings(settings_, far)};
     return Gathering(device_, settings, bvh_.constants(), &world, &points);
 }
 

@@ -25,6 +25,7 @@ namespace myriad::passes {
 
 enum class Visibility {
     manylods,  // maps from cuts through the BSH
+    megaviews, // maps from both trees, that of the scene and that of the views, and shared by views
     brute,     // maps of all triangles
     ism,       // imperfect shadow maps
     rays,      // exact: the same-VPL reference
@@ -136,7 +137,7 @@ private:
     void make_lighting(const scenes::Scene& scene, compute::Derived& derived, const scenes::Triangles& triangles);
     void make_tree(compute::Derived& derived);
     Gathering make_gathering(uint32_t lights, bool far, const compute::WorldTriangles& world, const IsmScene& points);
-    MapScene map_scene() const { return {.tree = tree(), .geometry = &geometry_}; }
+    MapScene map_scene() const { return {.tree = tree(), .low = low_, .high = high_, .geometry = &geometry_}; }
     void prepare_paths();
     void see(const scenes::Camera& camera);
     void refit_tree();
@@ -160,6 +161,7 @@ private:
     compute::Bvh bvh_;
     vec3 background_{0};
     float reach_ = 0, vpl_bound_ = 0;
+    vec3 low_{0}, high_{0};  // of the triangles, over all that plays
     // Passes that the scene or the settings do not need do not exist.
     std::optional<DeformPass> deform_;
     GBufferPass gbuffer_;

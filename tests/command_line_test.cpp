@@ -171,6 +171,20 @@ TEST_F(command_line, arities) {
     EXPECT_NEAR(mean(images[0]) / mean(images[2]), 1, 0.03);
 }
 
+TEST_F(command_line, megaviews) {
+    refuse(2, tiny + Arguments{"-o", exr, "--visibility", "megaviews", "--update", "incremental"}, "--update incremental carries the cuts of manylods");
+    refuse(2, {"render", "builtin:cornell", "-o", exr, "--size", "64x48", "--samples", "12", "--visibility", "megaviews", "--vpls", "2000000"}, "megaviews takes up to 1048576 views");
+    const std::string stats = folder / "s.json";
+    succeed(tiny + Arguments{"-o", exr, "-q", "--stats", stats, "--visibility", "megaviews"});
+    const auto json = nlohmann::json::parse(bytes_of(stats)), counters = json["frames"][0]["counters"];
+    EXPECT_EQ(json["settings"]["visibility"], "megaviews");
+    EXPECT_FALSE(json["settings"].contains("update"));
+    EXPECT_FALSE(counters.contains("node_views"));
+    EXPECT_GT(counters["pairs"], counters["pairs_rendered"]);
+    EXPECT_GE(counters["views_per_rendered_pair"], 1);
+    EXPECT_GT(counters["peak_bytes"]["view tree"], 0);
+}
+
 TEST_F(command_line, outputs_that_cannot_be_written_are_told_at_once) {
     const TempFolder other;
     std::filesystem::create_directory(other / "folder.exr");

@@ -61,10 +61,10 @@ protected:
         return ::testing::AssertionSuccess();
     }
 
-    // Finite by all kinds of visibility. Returns the images: maps, rays, none, maps of all triangles, imperfect ones.
+    // Finite by all kinds of visibility. Returns the images: maps, rays, none, maps of all triangles, imperfect ones, shared ones.
     std::vector<Image> all(const Kit& kit) {
         std::vector<Image> images;
-        for (Visibility v : {Visibility::manylods, Visibility::rays, Visibility::none, Visibility::brute, Visibility::ism}) {
+        for (Visibility v : {Visibility::manylods, Visibility::rays, Visibility::none, Visibility::brute, Visibility::ism, Visibility::megaviews}) {
             SCOPED_TRACE(testing::Message() << "visibility " << int(v));
             images.push_back(render(kit, small(v)));
             expect_finite(images.back());
@@ -78,6 +78,7 @@ protected:
         EXPECT_GE(none, rays * 0.999);
         EXPECT_NEAR(maps / rays, 1, tolerance) << "maps " << maps << ", rays " << rays << ", none " << none;
         EXPECT_NEAR(mean(images[3], "indirect") / rays, 1, tolerance) << "maps of all triangles";
+        EXPECT_NEAR(mean(images[5], "indirect") / rays, 1, tolerance) << "shared maps";
         EXPECT_LT(std::abs(maps - rays), std::max(none - rays, 0.1 * rays)) << "maps must be worth more than no visibility";
     }
 
@@ -256,39 +257,49 @@ TEST_F(HardCases, the_same_bits_again_and_in_both_append_modes) {
         EXPECT_TRUE(identical(first, render(kit, settings)));
         settings.maps.append = compute::AppendMode::atomic;
         EXPECT_TRUE(identical(first, render(kit, settings)));
+        settings.visibility = Visibility::megaviews;
+        const Image shared = render(kit, settings);
+        EXPECT_TRUE(identical(shared, render(kit, settings)));
+        settings.maps.append = compute::AppendMode::scan;
+        EXPECT_TRUE(identical(shared, render(kit, settings)));
+        settings.visibility = Visibility::manylods;
         settings.seed = 2;
         EXPECT_FALSE(identical(first, render(kit, settings))) << "another seed must change it, or nothing was compared";
     }
 }
 
 TEST_F(HardCases, little_memory_gives_the_same_image_in_batches) {
-    const Kit kit = Kit::room();
-    FrameSettings settings = small();
-    settings.vpls = 512;
-    settings.maps.map_size = 32;
-    const Image ample = render(kit, settings);
-    ASSERT_EQ(batches, 1u);
-    const uint64_t least = [&] {  // what is needed without maps
-        FrameSettings without = settings;
-        without.visibility = Visibility::none;
-        engine::Device probe({.select = "", .validation = false, .memory_limit = 0});
-        render(probe, kit, without);
-        uint64_t bytes = 0;
-        for (const auto& [kind, use] : probe.memory()) bytes += use.peak;
-        return bytes;
-    }();
-    uint32_t split = 0;
-    for (uint64_t extra : {512u << 10, 1024u << 10}) {
-        engine::Device little({.select = "", .validation = true, .memory_limit = least + extra});
-        try {
-            EXPECT_TRUE(identical(ample, render(little, kit, settings))) << extra;
-            split += batches > 1;
-        } catch (const OutOfMemory& e) {
-            EXPECT_LT(extra, 1024u << 10) << e.what();
+    for (const Visibility visibility : {Visibility::manylods, Visibility::megaviews}) {
+        SCOPED_TRACE(testing::Message() << "visibility " << int(visibility));
+        const Kit kit = Kit::room();
+        FrameSettings settings = small(visibility);
+        settings.vpls = 512;
+        settings.maps.map_size = 32;
+        const Image ample = render(kit, settings);
+        ASSERT_EQ(batches, 1u);
+        const uint64_t least = [&] {  // what is needed without maps
+            FrameSettings without = settings;
+            without.visibility = Visibility::none;
+            engine::Device probe({.select = "", .validation = false, .memory_limit = 0});
+            render(probe, kit, without);
+            uint64_t bytes = 0;
+            for (const auto& [kind, use] : probe.memory()) bytes += use.peak;
+            return bytes;
+        }();
+        uint32_t split = 0;
+        const uint64_t most = visibility == Visibility::megaviews ? 3072u << 10 : 1024u << 10;
+        for (uint64_t extra : {most / 2, most}) {
+            engine::Device little({.select = "", .validation = true, .memory_limit = least + extra});
+            try {
+                EXPECT_TRUE(identical(ample, render(little, kit, settings))) << extra;
+                split += batches > 1;
+            } catch (const OutOfMemory& e) {
+                EXPECT_LT(extra, most) << e.what();
+            }
+            EXPECT_EQ(little.validation_messages(), 0u);
         }
-        EXPECT_EQ(little.validation_messages(), 0u);
+        EXPECT_GT(split, 0u);
     }
-    EXPECT_GT(split, 0u);
 }
 
 TEST_F(HardCases, the_comparison_sees_a_bit) {

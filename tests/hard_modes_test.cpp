@@ -296,7 +296,7 @@ TEST_F(HardModes, visibility) {
     each([&](const HardCase& c, const Kit& kit) {
         if (c.maps == HardCase::known) return;
         std::vector<double> light;
-        for (const Visibility v : {Visibility::rays, Visibility::none, Visibility::manylods, Visibility::brute, Visibility::ism}) {
+        for (const Visibility v : {Visibility::rays, Visibility::none, Visibility::manylods, Visibility::brute, Visibility::ism, Visibility::megaviews}) {
             SCOPED_TRACE(testing::Message() << "visibility " << int(v));
             light.push_back(mean(play(kit, small(v)).images[0], "indirect"));
         }
@@ -305,6 +305,7 @@ TEST_F(HardModes, visibility) {
         EXPECT_GT(light[0], 0);
         EXPECT_NEAR(light[2] / light[0], 1, 0.25) << "maps";
         EXPECT_NEAR(light[3] / light[0], 1, 0.25) << "maps of all triangles";
+        EXPECT_NEAR(light[5] / light[0], 1, 0.25) << "shared maps";
     });
 }
 

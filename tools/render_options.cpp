@@ -69,7 +69,7 @@ void add_primary(CLI::App& command, RenderOptions& o) {
 
 void add_technique(CLI::App& command, passes::FrameSettings& s) {
     add_choice(command, "--visibility", s.visibility, visibilities(),
-               "whether a VPL sees a pixel: by its map, drawn from its cut through the scene\n(manylods), of all triangles (brute) or of few points (ism: imperfect shadow maps); by exact rays, the reference; or taken for granted");
+               "whether a VPL sees a pixel: by its map, drawn from its cut through the scene\n(manylods), of both trees, of the scene and of the VPLs, with what is alike for many drawn once (megaviews), of all triangles (brute) or of few points (ism: imperfect shadow maps); by exact rays, the reference; or taken for granted");
     add_whole(command, "--vpls", s.vpls, 0, 1u << 24, "virtual point lights at most; 0: no indirect light");
     add_whole(command, "--bounces", s.bounces, 0, 64, "diffuse reflections of light before what the camera sees");
     add_parsed(command, "--gather", "all|subset:K", show_gather(s.subset), "VPLs that each pixel gathers: all, or about K, a different subset\n"
@@ -119,7 +119,7 @@ const char* const footer =
 
 const Choices<passes::Visibility>& visibilities() {
     using passes::Visibility;
-    static const Choices<Visibility> choices = {{"manylods", Visibility::manylods}, {"brute", Visibility::brute}, {"ism", Visibility::ism}, {"rays", Visibility::rays}, {"none", Visibility::none}};
+    static const Choices<Visibility> choices = {{"manylods", Visibility::manylods}, {"megaviews", Visibility::megaviews}, {"brute", Visibility::brute}, {"ism", Visibility::ism}, {"rays", Visibility::rays}, {"none", Visibility::none}};
     return choices;
 }
 
@@ -227,6 +227,8 @@ void check_outputs(const RenderOptions& o) {
     if (!o.camera_path.empty() && !o.time && !o.frames) throw InputError("--camera-path is a way in time; say which moment with --time, or which with --frames");
     if (o.rebuild && !o.moves())
         throw InputError("--rebuild is about a scene that moves; play a clip, with --frames, --time or --animation");
+    if (o.frame.visibility == passes::Visibility::megaviews && o.frame.maps.update != passes::CutUpdate::basic)
+        throw InputError("--update " + show_update(o.frame.maps) + " carries the cuts of manylods from frame to frame; megaviews has none, its trees are walked anew");
     if (o.primary_pixels && o.frame.primary != passes::Primary::points)
         throw InputError("--primary-pixels is about points, and rays have no size; give --primary points with it");
     const RenderOptions::Environment& e = o.environment;

@@ -43,13 +43,17 @@ ordered_json counters_json(const FrameRun& frame) {
     if (frame.counters.tree_rebuilds) counters["tree_rebuilds"] = *frame.counters.tree_rebuilds;
     if (const auto& maps = frame.counters.maps) {
         if (maps->list_capacity) {
-            counters["node_views"] = maps->node_views;
-            counters["cut"] = maps->cut;
+            if (!maps->pairs) counters["node_views"] = maps->node_views, counters["cut"] = maps->cut;
             if (maps->invalid) counters["cut_invalid"] = maps->invalid;
             if (maps->maps_drawn) counters["maps_drawn"] = *maps->maps_drawn;
             counters["cut_groups"] = maps->groups;
             counters["list_capacity"] = maps->list_capacity;
             counters["list_peak"] = maps->list_peak;
+        }
+        if (maps->pairs) {
+            counters["pairs"] = maps->pairs, counters["pairs_culled"] = maps->pairs_culled, counters["pairs_rendered"] = maps->pairs_rendered;
+            counters["views_per_rendered_pair"] = maps->pairs_rendered ? double(maps->views_of_rendered) / double(maps->pairs_rendered) : 0.0;
+            counters["shared_maps"] = maps->shared_maps;
         }
         if (maps->triangle_views) counters["triangle_views"] = maps->triangle_views;
         counters["batches"] = maps->batches;
@@ -80,7 +84,12 @@ std::string counters_text(const FrameRun& frame) {
     if (frame.counters.prepared) text += ", light paths prepared anew";
     const auto& maps = frame.counters.maps;
     if (maps && maps->triangle_views) text += format(", %llu triangles drawn in views, %u batches", static_cast<unsigned long long>(maps->triangle_views), maps->batches);
-    if (maps && maps->list_capacity)
+    if (maps && maps->pairs)
+        text += format(", %llu pairs tested, %llu culled, %llu rendered for %.1f views each, %llu shared maps, %u batches, %u redone",
+                       static_cast<unsigned long long>(maps->pairs), static_cast<unsigned long long>(maps->pairs_culled),
+                       static_cast<unsigned long long>(maps->pairs_rendered), maps->pairs_rendered ? double(maps->views_of_rendered) / double(maps->pairs_rendered) : 0.0,
+                       static_cast<unsigned long long>(maps->shared_maps), maps->batches, maps->redone);
+    else if (maps && maps->list_capacity)
         text += format(", %llu node-views tested, %llu in the cuts, lists %llu of %llu, %u batches, %u redone",
                        static_cast<unsigned long long>(maps->node_views), static_cast<unsigned long long>(maps->cut),
                        static_cast<unsigned long long>(maps->list_peak), static_cast<unsigned long long>(maps->list_capacity), maps->batches,
@@ -147,9 +156,9 @@ ordered_json settings_json(const passes::FrameSettings& s, float vpl_bound, bool
     json["map_size"] = s.maps.map_size;
     json["bias"] = shortest(s.bias);
     if (s.visibility == passes::Visibility::ism) json["ism_points"] = s.maps.ism.points, json["log2_samples"] = s.log2_samples;
-    if (s.visibility != passes::Visibility::manylods) return json;
+    if (s.visibility != passes::Visibility::manylods && s.visibility != passes::Visibility::megaviews) return json;
     json["append"] = choice_name(append_modes(), s.maps.append);
-    json["update"] = show_update(s.maps);
+    if (s.visibility == passes::Visibility::manylods) json["update"] = show_update(s.maps);
     json["epsilon"] = shortest(s.maps.epsilon);
     json["log2_samples"] = s.log2_samples;
     json["arity"] = s.maps.arity;

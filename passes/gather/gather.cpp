@@ -10,18 +10,18 @@ using engine::passes_kernels;
 
 namespace {
 
-engine::Program program(engine::Device& device, GatherVisibility visibility, engine::Constants variant, bool glossy, bool far) {
+engine::Program program(engine::Device& device, GatherVisibility visibility, engine::Constants variant, bool glossy, bool far, bool listed) {
     variant[glossy_constant] = glossy;
     variant[parallel_constant] = far;
     if (visibility == GatherVisibility::rays) return {device, passes_kernels, "gather/rays", variant};
-    return {device, passes_kernels, "gather/maps", {{2, visibility == GatherVisibility::maps}, {glossy_constant, glossy}, {parallel_constant, far}}};
+    return {device, passes_kernels, "gather/maps", {{2, visibility == GatherVisibility::maps}, {glossy_constant, glossy}, {parallel_constant, far}, {gather_listed_constant, listed}}};
 }
 
 }  // namespace
 
 GatherPass::GatherPass(engine::Device& device, GatherVisibility visibility, uint32_t width, uint32_t height,
-                       const engine::Constants& variant, bool glossy, bool far)
-    : device_(device), visibility_(visibility), program_(program(device, visibility, variant, glossy, far)),
+                       const engine::Constants& variant, bool glossy, bool far, bool listed)
+    : device_(device), visibility_(visibility), program_(program(device, visibility, variant, glossy, far, listed)),
       irradiance_(device, "images", "irradiance", uint64_t(width) * height * (glossy ? 2 : 1)) {}
 
 uint32_t GatherPass::max_vpls(uint32_t block) const {
@@ -55,7 +55,8 @@ void GatherPass::record_maps(engine::Recorder& recorder, const GatherInputs& in,
                                      .first_map = first,
                                      .has_failed = lists != nullptr,
                                      .bound = in.bound,
-                                     .bias = bias},
+                                     .bias = bias,
+                                     .listed = in.listed ? recorder.read(*in.listed) : Uints{}},
                           threads(in));
 }
 

@@ -21,13 +21,15 @@ struct GatherInputs {
     uint32_t block = 1;                // k: each pixel gathers one of k x k sets
     float bound = 1e30f;               // 1/m^2; far lights have none
     const engine::Array<View>* views = nullptr;  // maps of far lights: their views
+    const engine::Array<uint>* listed = nullptr; // maps: as GatherPush::listed, where the pass was made for it
 };
 
 class GatherPass {
 public:
     // `glossy`: for a G-buffer with gloss. `far`: the lights are infinitely far, each a far_light() with a parallel view.
+    // `listed`: maps only, VPLs are not in the order of their sets (GatherInputs::listed).
     GatherPass(engine::Device& device, GatherVisibility visibility, uint32_t width, uint32_t height, const engine::Constants& variant = {},
-               bool glossy = false, bool far = false);
+               bool glossy = false, bool far = false, bool listed = false);
 
     void clear(engine::Recorder& recorder) { recorder.fill(irradiance_, 0); }
 

@@ -22,7 +22,11 @@ struct GatherPush {
     uint has_failed;
     float bound;              // 1/m^2
     float bias;               // maps only, texels
+    Uints listed;             // where VPLs are not in the order of their sets: set << gather_listed_bits | index of a VPL, in ascending order
 };
+// Specialisation constant: VPLs are listed.
+const uint gather_listed_constant = 23u;
+const uint gather_listed_bits = 20u;
 
 // "rays": the same, with a BVH in place of the atlas.
 struct GatherRaysPush {

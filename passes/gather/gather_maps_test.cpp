@@ -1,6 +1,7 @@
 // Visibility by maps: the query's properties on the host, and the kernel against maps of exact depths.
 #include <array>
 #include <functional>
+#include <numeric>
 
 #include "passes/gather/gather_testing.hpp"
 #include "passes/geometry/test_scene.hpp"
@@ -105,6 +106,31 @@ TEST_F(GatherMapsTest, equals_the_twin_on_random_maps) {
             Options split = whole;
             split.parts = {block * block * 2, 64};
             EXPECT_TRUE(engine::same(got, run(g, vpls, split)));
+
+            // VPLs in another order, listed by the sets that they were in: the same sums, in another order. Listed as they are: the same bits.
+            std::vector<uint> shuffled(vpls.size()), as_they_are, listed;
+            std::iota(shuffled.begin(), shuffled.end(), 0u);
+            const auto list = [&] {
+                std::vector<uint> codes;
+                for (uint i = 0; i < shuffled.size(); ++i) codes.push_back(shuffled[i] % (block * block) << gather_listed_bits | i);
+                std::ranges::sort(codes);
+                return codes;
+            };
+            as_they_are = list();
+            Options same_order = split;
+            same_order.listed = &as_they_are;
+            EXPECT_TRUE(engine::same(got, run(g, vpls, same_order)));
+            std::ranges::shuffle(shuffled, random);
+            listed = list();
+            std::vector<Vpl> moved;
+            std::vector<uint> moved_atlas;
+            for (uint i : shuffled) {
+                moved.push_back(vpls[i]);
+                moved_atlas.insert(moved_atlas.end(), atlas.begin() + i * map_texels(size), atlas.begin() + (i + 1) * map_texels(size));
+            }
+            Options other_order = split;
+            other_order.listed = &listed, other_order.atlas = &moved_atlas;
+            EXPECT_TRUE(near(expected, run(g, moved, other_order)));
         }
 }
 

@@ -5,6 +5,7 @@
 #include "passes/gather/gather_io.h"
 layout(constant_id = 2) const bool use_maps = true;
 layout(constant_id = glossy_constant) const bool glossy = false;
+layout(constant_id = gather_listed_constant) const bool listed = false;
 layout(push_constant, scalar) uniform Push { GatherPush push; };
 
 float seen_in_texel(MapQuery q, int right, int below, uint map) {
@@ -26,6 +27,17 @@ float seen_in_parallel_map(vec3 x, vec3 n_g, View view, uint map) {
                                   seen_in_parallel_texel(q, 0, 1, map), seen_in_parallel_texel(q, 1, 1, map)));
 }
 
+// The first of `count` listed VPLs that is not before `code`.
+uint first_listed(uint code, uint count) {
+    uint first = 0u;
+    while (first < count) {
+        const uint middle = (first + count) / 2u;
+        if (push.listed.at[middle] < code) first = middle + 1u;
+        else count = middle;
+    }
+    return first;
+}
+
 void main() {
     const GatherPixel pixel = gather_pixel(workgroup_index(), gl_LocalInvocationIndex, gl_WorkGroupSize.x, push.gbuffer.width,
                                            push.gbuffer.height, push.block);
@@ -45,13 +57,18 @@ void main() {
 
     const uint sets = push.block * push.block;
     const float scale = gather_scale(push.block);
-    const uint end = min(push.first + push.limit, push.count.at[0]);
+    const uint count = push.count.at[0];
+    const uint end = min(push.first + push.limit, count);
+    const uint base = pixel.set << gather_listed_bits;
+    uint at = listed ? first_listed(base | push.first, count) : push.first + pixel.set;
     // Continues the sum that is there in order, so the bits do not depend on how VPLs are split over dispatches.
     vec3 sum = push.irradiance.at[p].xyz;
     vec3 mirrored = vec3(0.0f);
     if (glossy) mirrored = push.irradiance.at[pixels + p].xyz;
     // The index depends on the workgroup alone, so a VPL is read once for all its lanes.
-    for (uint i = push.first + pixel.set; i < end; i += sets) {
+    for (; at < (listed ? count : end); at += listed ? 1u : sets) {
+        const uint i = listed ? push.listed.at[at] - base : at;
+        if (listed && i >= end) break;
         const Vpl vpl = push.vpls.at[i];
         Transfer t;
         if (parallel_views) t = far_transfer(n, n_g, lobe, vpl);

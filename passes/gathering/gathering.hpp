@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 
+#include "compute/sort/sort.hpp"
 #include "passes/filter/filter.hpp"
 #include "passes/gather/gather.hpp"
 #include "passes/maps/maps.hpp"
@@ -54,11 +55,21 @@ public:
     std::optional<MapCounters> take_counters() { return maps_ ? std::optional(maps_->take_counters()) : std::nullopt; }
 
 private:
+    const engine::Array<uint>* reorder(engine::Recorder& recorder, const GatheringInputs& in);
+
     GatheringSettings settings_;
     uint32_t block_;
     GatherPass gather_;
     std::optional<FilterPass> filter_;
     std::optional<ViewMaps> maps_;
+    // Where maps take views in an order of their own, lights go along, and are listed by the sets that they were in.
+    struct Reordering {
+        engine::Program reorder;
+        compute::Sort sort;
+        engine::Array<Vpl> lights;
+        engine::Array<uint> sets, listed;
+    };
+    std::optional<Reordering> reordering_;
 };
 
 }  // namespace myriad::passes

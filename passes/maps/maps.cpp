@@ -24,6 +24,8 @@ MapCounters& MapCounters::operator+=(const MapCounters& other) {
     node_views += other.node_views, invalid += other.invalid, cut += other.cut, groups += other.groups;
     list_peak = std::max(list_peak, other.list_peak), list_capacity = std::max(list_capacity, other.list_capacity);
     batches += other.batches, redone += other.redone, triangle_views += other.triangle_views;
+    pairs += other.pairs, pairs_culled += other.pairs_culled, pairs_rendered += other.pairs_rendered, views_of_rendered += other.views_of_rendered;
+    shared_maps += other.shared_maps;
     if (other.maps_drawn) maps_drawn = maps_drawn.value_or(0) + *other.maps_drawn;
     return *this;
 }
@@ -36,12 +38,15 @@ ViewMaps::ViewMaps(engine::Device& device, const MapSettings& settings, uint32_t
     // Before the atlas, which takes its share of what memory they leave.
     if (settings.method == MapMethod::brute) brute_.emplace(device, *world);
     if (settings.method == MapMethod::ism) ism_.emplace(device, *ism, settings.ism, settings.seed);
+    if (settings.method == MapMethod::megaviews) shared_.emplace(device, std::max(max_views, 1u), kind_of(settings));
     while (batch_ > multiple_ && !is_handy(batch_)) halve();
     make_atlas();
-    if (settings.method != MapMethod::manylods) return;
-    splat_.emplace(device, kind_of(settings));
-    if (settings.update != CutUpdate::basic) return;  // lists come with the first frame, one a batch
-    manylods_.emplace(device, kind_of(settings));
+    if (!has_lists()) return;
+    if (settings.method == MapMethod::manylods) {
+        splat_.emplace(device, kind_of(settings));
+        if (settings.update != CutUpdate::basic) return;  // lists come with the first frame, one a batch
+        manylods_.emplace(device, kind_of(settings));
+    }
     const uint64_t affordable = device_.memory_free() / 2 / (4 * sizeof(uvec2));
     const uint64_t kept = std::min({groups_guess(batch_), affordable, AppendLists::max_capacity});
     make_lists(std::max<uint64_t>(kept - kept / 4, batch_), std::max<uint64_t>(kept, 1));
@@ -51,8 +56,7 @@ ViewMaps::ViewMaps(engine::Device& device, const MapSettings& settings, uint32_t
 // memory is left, and an index into it has 32 bits.
 bool ViewMaps::is_handy(uint32_t views) const {
     const uint64_t words = atlas_words(views, settings_.map_size);
-    return words >> 32 == 0 && words * sizeof(uint) <= device_.memory_free() / 2 &&
-           (settings_.method != MapMethod::manylods || groups_guess(views) <= 1 << 23);
+    return words >> 32 == 0 && words * sizeof(uint) <= device_.memory_free() / 2 && (!has_lists() || groups_guess(views) <= 1 << 23);
 }
 
 // A batch that does not fit is done again with longer lists, so the guess need not be safe. Measured: up to 1.16 groups a texel at an
@@ -66,7 +70,16 @@ void ViewMaps::halve() { batch_ = round_up(batch_ / 2, multiple_); }
 
 void ViewMaps::make_atlas() {
     atlas_ = {};
-    atlas_ = {device_, "atlas", "atlas", atlas_words(batch_, settings_.map_size)};
+    if (shared_ && shared_maps_ == 0) shared_maps_ = batch_ / 2 + 64;  // a guess; see grow()
+    atlas_ = {device_, "atlas", "atlas", atlas_words(batch_ + shared_maps_, settings_.map_size)};
+}
+
+const engine::Array<uint>* ViewMaps::begin(engine::Recorder& recorder, const MapScene& scene, const engine::Array<View>& views,
+                                           const engine::Array<uint>& count) {
+    if (!shared_) return nullptr;
+    auto scope = recorder.scope("view tree");
+    shared_->begin(recorder, views, count, scene.low, scene.high);
+    return &shared_->order();
 }
 
 void ViewMaps::make_lists(uint64_t next, uint64_t kept) {
@@ -94,6 +107,7 @@ void ViewMaps::record(engine::Recorder& recorder, const MapScene& scene, const e
         return;
     }
     const compute::Bsh& tree = *scene.tree;
+    if (shared_) return shared_->record(recorder, *lists_, tree, count, first, batch_, settings_.epsilon, settings_.map_size, atlas_, batch_ + shared_maps_);
     const compute::ManyLodsInputs cut{tree, views, count, first, batch_, settings_.epsilon, settings_.map_size};
     if (manylods_) {
         auto scope = recorder.scope("cut");
@@ -130,8 +144,14 @@ bool ViewMaps::accept() {
     counters_.list_capacity = std::max(lists()->next_capacity(), lists()->kept_capacity());
     if (!report.ok()) return grow(report), false;
     ++counters_.batches;
-    counters_.node_views += report.processed;
     counters_.groups += report.kept;
+    if (shared_) {
+        const compute::PairReport::Step pairs = shared_->pairs().total;
+        counters_.pairs += pairs.tested, counters_.pairs_culled += pairs.culled, counters_.pairs_rendered += pairs.rendered;
+        counters_.views_of_rendered += pairs.shared, counters_.shared_maps += shared_->shared_needed();
+        return true;
+    }
+    counters_.node_views += report.processed;
     if (!carried_now_) {
         counters_.cut += report.processed - report.opened;
         return true;
@@ -151,6 +171,14 @@ uint64_t ViewMaps::list_bytes(uint64_t next, uint64_t kept) const {
 void ViewMaps::grow(const compute::AppendReport& report) {
     ++counters_.redone;
     atlas_of_ = nullptr;
+    if (report.caller_overflowed && !report.next_overflowed && !report.kept_overflowed) {
+        const uint32_t wanted = shared_->shared_needed() + shared_->shared_needed() / 4;
+        const uint64_t words = atlas_words(batch_ + wanted, settings_.map_size);
+        if (words >> 32 == 0 && words * sizeof(uint) <= device_.memory_free() + atlas_.bytes()) return shared_maps_ = wanted, make_atlas();
+        if (batch_ > multiple_) return halve(), shared_maps_ = 0, make_atlas();
+        throw OutOfMemory("the maps of " + std::to_string(batch_) + " views and those that they share need " + std::to_string((words >> 18) + 1) +
+                          " MiB, which --memory-limit does not leave; raise it, or lower --map-size");
+    }
     // A quarter more than was needed: the next frame's need differs, and an overflowed step hides what came after it.
     auto grown = [](uint64_t needed, uint64_t capacity) { return needed > capacity ? needed + needed / 4 : capacity; };
     uint64_t next = grown(report.next_needed, lists()->next_capacity());
@@ -166,6 +194,7 @@ void ViewMaps::grow(const compute::AppendReport& report) {
         make_lists(next, kept);
     } else if (!carried_now_ && batch_ > multiple_) {
         halve();
+        shared_maps_ = 0;
         make_atlas();
     } else {
         throw OutOfMemory("the lists of " + std::to_string(batch_) + " views need " + std::to_string((need >> 20) + 1) +

@@ -9,6 +9,7 @@
 #include "compute/manylods/manylods.hpp"
 #include "passes/brute/brute.hpp"
 #include "passes/ism/ism.hpp"
+#include "passes/maps/shared_maps.hpp"
 #include "passes/splat/splat.hpp"
 
 namespace myriad::passes {
@@ -16,6 +17,7 @@ namespace myriad::passes {
 // How a batch of maps is drawn.
 enum class MapMethod {
     manylods,  // each view's cut through the BSH, splatted
+    megaviews, // what is alike in many views is drawn once for all of them
     brute,     // all triangles, rasterised
     ism,       // few points of the surface, others in each view, and holes filled
 };
@@ -43,7 +45,8 @@ struct MapSettings {
 
 // What is drawn; a method needs but its own.
 struct MapScene {
-    const compute::Bsh* tree = nullptr;   // manylods
+    const compute::Bsh* tree = nullptr;   // manylods, megaviews
+    vec3 low{0}, high{0};                 // megaviews: a box that most views are in
     const Geometry* geometry = nullptr;   // brute, ism
 };
 
@@ -56,6 +59,9 @@ struct MapCounters {
     uint64_t list_peak = 0, list_capacity = 0;  // items of the longest list, and what there was room for
     uint32_t batches = 0, redone = 0;
     uint64_t triangle_views = 0;  // brute: triangles, each in every view
+    // megaviews: pairs of scene nodes and view nodes that were tested, and what became of them; views that the rendered ones stand for; maps of view
+    // nodes with several views.
+    uint64_t pairs = 0, pairs_culled = 0, pairs_rendered = 0, views_of_rendered = 0, shared_maps = 0;
 
     MapCounters& operator+=(const MapCounters& other);
 };
@@ -71,11 +77,13 @@ public:
     // What must be done when the scene has moved, and once before the first batch: ism's points; the others' inputs are the caller's.
     void place(engine::Recorder& recorder, const MapScene& scene);
 
+    // Once a frame, before its first batch. Returns the order that views are taken in from here on, by place: which view; null: as they are.
+    const engine::Array<uint>* begin(engine::Recorder& recorder, const MapScene& scene, const engine::Array<View>& views, const engine::Array<uint>& count);
 
     // How many views go at once; can get smaller when accept() returns false.
     uint32_t batch() const { return batch_; }
 
-    // Draws views [first, first + batch()) of those that exist.
+    // Draws views [first, first + batch()) of those that exist, in begin()'s order.
     void record(engine::Recorder& recorder, const MapScene& scene, const engine::Array<View>& views, const engine::Array<uint>& count,
                 uint32_t first);
 
@@ -100,6 +108,7 @@ private:
     void grow(const compute::AppendReport& report);
     uint64_t list_bytes(uint64_t next, uint64_t kept) const;
     void make_atlas();
+    bool has_lists() const { return settings_.method == MapMethod::manylods || settings_.method == MapMethod::megaviews; }
     bool is_handy(uint32_t views) const;
     void halve();
     uint64_t groups_guess(uint32_t views) const;
@@ -118,6 +127,8 @@ private:
     bool keeps_ = false;                                         // whether the batch that was recorded last kept some
     std::optional<BrutePass> brute_;
     std::optional<IsmPass> ism_;
+    std::optional<SharedMaps> shared_;
+    uint32_t shared_maps_ = 0;                                   // of the atlas's maps, the last ones
     engine::Array<uint> atlas_;
     MapCounters counters_;
 };

@@ -4,6 +4,7 @@
 #include "engine/kernel.glsl"
 #include "passes/splat/splat_io.h"
 layout(constant_id = 2) const uint threads_per_group = 1u;
+layout(constant_id = shared_maps_constant) const bool shared_maps = false;
 layout(push_constant, scalar) uniform Push { SplatPush push; };
 
 void draw_half(Splat s, uint half_index, uint map) {
@@ -67,7 +68,9 @@ void main() {
     if (push.keeps != 0u && push.changed.at[g.view - push.first_view] == 0u) return;
     const View view = push.views.at[g.view];
     const vec4 frame = push.tree.frames.at[g.block];
-    const uint map = (g.view - push.first_view) * map_texels(push.map_size);
+    uint map = g.view - push.first_view;
+    if (shared_maps && g.view >= push.view_capacity) map = push.first_shared + push.places.at[g.view - push.view_capacity];
+    map *= map_texels(push.map_size);
     for (; drawn != 0u; drawn &= drawn - 1u) {
         const uint slot = bsh_arity * g.block + findLSB(drawn);
         const uvec2 box = push.tree.boxes.at[slot];

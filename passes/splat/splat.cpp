@@ -39,7 +39,10 @@ void SplatPass::record(engine::Recorder& recorder, const SplatInputs& in, const 
                          .map_size = in.map_size,
                          .first_view = in.first_view,
                          .keeps = in.changed ? 1u : 0u,
-                         .changed = in.changed ? recorder.read(*in.changed) : Uints{}};
+                         .changed = in.changed ? recorder.read(*in.changed) : Uints{},
+                         .places = in.places ? recorder.read(*in.places) : Uints{},
+                         .view_capacity = in.view_capacity,
+                         .first_shared = in.first_shared};
     });
 }
 

@@ -17,11 +17,15 @@ struct SplatInputs {
     uint32_t first_view = 0, map_size = 0;
     // By view from `first_view`: 0 where the atlas holds this very map already, and keeps it. Null: it holds nothing.
     const engine::Array<uint>* changed = nullptr;
+    // Maps that views share: `views` are nodes of a view tree, of which those from `view_capacity` on are inner ones, and this says which of the maps
+    // from `first_shared` on each of these has. Null: a map a view.
+    const engine::Array<uint>* places = nullptr;
+    uint32_t view_capacity = 0, first_shared = 0;
 };
 
 class SplatPass {
 public:
-    // `constants`: as compute::ManyLods.
+    // `constants`: as compute::ManyLods; shared_maps_constant, where views share maps.
     explicit SplatPass(engine::Device& device, engine::Constants constants = {});
 
     // Throws InputError when maps of this size cannot be drawn on the device (a driver that limits loops).

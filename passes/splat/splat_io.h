@@ -29,7 +29,13 @@ struct SplatPush {
     uint capacity, map_size, first_view;
     uint keeps;              // 1: maps of views that did not change are in the atlas, and stay
     Uints changed;           // by view from first_view; only where `keeps`
+    // Shared maps only: groups' views are nodes of a view tree, those from `view_capacity` on are inner ones.
+    Uints places;            // by inner node: which of the shared maps is its
+    uint view_capacity;
+    uint first_shared;       // maps before these are views'
 };
+// Specialisation constant: maps are shared.
+const uint shared_maps_constant = 22u;
 
 // "splat/clear": one invocation a row of a half map.
 struct SplatClearPush {

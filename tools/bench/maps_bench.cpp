@@ -57,7 +57,7 @@ BenchRow maps_row(const char* bench, const std::string& source, const char* tech
     row.views = settings.vpls;
     row.settings = {{"width", settings.width}, {"height", settings.height}};
     if (settings.visibility != Visibility::rays && settings.visibility != Visibility::none) row.settings["map_size"] = settings.maps.map_size;
-    if (settings.visibility == Visibility::manylods) {
+    if (settings.visibility == Visibility::manylods || settings.visibility == Visibility::megaviews) {
         row.settings["epsilon"] = settings.maps.epsilon;
         row.settings["samples"] = uint64_t(1) << settings.log2_samples;
         row.settings["arity"] = settings.maps.arity;
@@ -72,7 +72,7 @@ void add_maps_times(BenchRow& row, const passes::Frame& frame) {
     double total = 0;
     std::map<std::string, double> stages;
     for (const engine::PassTime& pass : frame.times())
-        if (pass.name == "cut" || pass.name == "splat" || pass.name == "brute" || pass.name == "ism") total += pass.gpu_ms, stages[pass.name] += pass.gpu_ms;
+        if (pass.name == "cut" || pass.name == "view tree" || pass.name == "pairs" || pass.name == "fuse" || pass.name == "splat" || pass.name == "brute" || pass.name == "ism") total += pass.gpu_ms, stages[pass.name] += pass.gpu_ms;
     row.ms.ms.push_back(total);
     for (const auto& [name, ms] : stages) row.stages[name].ms.push_back(ms);
 }
