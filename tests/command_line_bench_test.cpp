@@ -71,6 +71,40 @@ TEST_F(command_line, bench_figure_8) {
     EXPECT_TRUE(contains(bytes_of(folder / "f.svg"), ">lazy</text>"));
 }
 
+// A row for each distribution, number and technique; what draws each view for itself is extrapolated beyond what was asked for.
+TEST_F(command_line, bench_megaviews_views) {
+    refuse(2, {"bench", "manylods", "--distributions", "random"}, "--distributions is an option of bench megaviews-views");
+    refuse(2, {"bench", "megaviews-views", "--scene", "builtin:cornell", "--views", "4", "--distributions", "even"}, "--distributions");
+    succeed({"bench", "megaviews-views", "--scene", "builtin:cornell", "--views", "64,16", "--measured", "16", "--samples", "9", "--map-size", "4", "--repeat", "2",
+             "--json", folder / "rows.json", "--csv", folder / "v.csv", "--plot", folder / "v.svg"});
+    Arguments which;
+    for (const auto& row : rows_of(folder / "rows.json")) {
+        which.push_back(row["settings"]["distribution"].get<std::string>() + " " + std::to_string(row["views"].get<int>()) + " " + row["technique"].get<std::string>());
+        const bool extrapolated = row["technique"] == "manylods" && row["views"] == 64;
+        EXPECT_EQ(row["extrapolated"], extrapolated) << row;
+        EXPECT_EQ(row["ms"]["n"], extrapolated ? 1 : 2) << row;
+        EXPECT_EQ(row["error"].contains("relMSE"), row["views"] == 16) << row;
+        EXPECT_EQ(row["settings"]["map_size"], 4) << row;
+        EXPECT_TRUE(row["bytes"].contains("pairs") && row["bytes"].contains("atlas")) << row;
+        if (row["technique"] == "brute") continue;
+        EXPECT_EQ(row["settings"]["epsilon"], 2) << row;
+        EXPECT_GT(row["counters"]["at_once_bytes"], row["counters"]["at_once_pairs_bytes"]) << row;
+        if (row["technique"] != "megaviews") continue;
+        for (const char* stage : {"view tree", "pairs", "splat", "fuse"}) EXPECT_TRUE(row["stages"].contains(stage)) << row;
+        EXPECT_GE(row["counters"]["views_per_rendered_pair"], 1) << row;
+        EXPECT_TRUE(row["counters"].contains("times_manylods_ms")) << row;
+        EXPECT_EQ(row["counters"].contains("exponent"), row["views"] == 64) << row;
+    }
+    Arguments expected;
+    for (const char* distribution : {"1-bounce ", "4-bounce ", "random "})
+        for (const char* views : {"16 ", "64 "})
+            for (const char* technique : {"brute", "manylods", "megaviews"}) expected.push_back(std::string(distribution) + views + technique);
+    EXPECT_EQ(which, expected);
+    EXPECT_EQ(std::ranges::count(bytes_of(folder / "v.csv"), '\n'), 19);
+    EXPECT_TRUE(contains(bytes_of(folder / "v.svg"), ">megaviews 4-bounce</text>"));
+    EXPECT_TRUE(contains(bytes_of(folder / "v.svg"), "stroke-dasharray"));
+}
+
 // For each arity what its tree takes, and its cuts.
 TEST_F(command_line, bench_arity) {
     refuse(2, {"bench", "manylods-arity", "--arity", "4"}, "--arity is an option of bench manylods");

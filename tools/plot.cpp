@@ -8,7 +8,7 @@
 namespace myriad::tools {
 namespace {
 
-constexpr double width = 720, height = 360, left = 64, right = 16, top = 40, bottom = 48;
+constexpr double width = 720, left = 64, right = 16, bottom = 48, plot_height = 272, legend_line = 18;
 
 std::string number(double value) {
     char text[32];
@@ -41,12 +41,45 @@ std::string stroke(double x0, double y0, double x1, double y1, const std::string
 struct Axis {
     std::vector<double> marks;
     double from, to;
-    double operator()(double value) const { return from + (value - marks.front()) / (marks.back() - marks.front()) * (to - from); }
+    bool logarithmic;
+    double scale(double value) const { return logarithmic ? std::log10(value) : value; }
+    double operator()(double value) const {
+        return from + (scale(value) - scale(marks.front())) / (scale(marks.back()) - scale(marks.front())) * (to - from);
+    }
 };
 
-Axis axis(double low, double high, double from, double to, int count) {
+Axis axis(double low, double high, double from, double to, int count, bool logarithmic) {
+    if (logarithmic) {
+        if (!(low > 0)) low = high = 1;  // no line has a point
+        if (!(low < high)) low /= 2, high *= 2;
+        return {log_ticks(low, high), from, to, true};
+    }
     if (!(low < high)) low -= 0.5, high += 0.5;
-    return {ticks(low, high, count), from, to};
+    return {ticks(low, high, count), from, to, false};
+}
+
+double name_width(const Plot::Line& line) { return 8 * double(line.name.size()) + 36; }
+
+// The lines whose names stand in the title's line, in each of those below it: all there where they fit, none otherwise.
+std::vector<size_t> legend_lines(const Plot& plot) {
+    double all = 0;
+    for (const Plot::Line& line : plot.lines) all += name_width(line);
+    if (all + 8 * double(plot.title.size()) <= width - left - right) return {plot.lines.size()};
+    std::vector<size_t> counts = {0};
+    double used = width;
+    for (const Plot::Line& line : plot.lines) {
+        if (used + name_width(line) > width - left - right) counts.push_back(0), used = 0;
+        used += name_width(line);
+        ++counts.back();
+    }
+    return counts;
+}
+
+std::string path_of(const Plot::Line& line, size_t first, size_t end, const Axis& x, const Axis& y, const char* more) {
+    if (end - first < 1) return "";
+    std::string svg = "<path fill=\"none\" stroke=\"" + line.colour + "\" stroke-width=\"1.5\" stroke-linejoin=\"round\"" + more + " d=\"";
+    for (size_t i = first; i < end; ++i) svg += (i > first ? "L" : "M") + number(x(line.points[i].x)) + " " + number(y(line.points[i].y));
+    return svg + "\"/>\n";
 }
 
 }  // namespace
@@ -63,18 +96,33 @@ std::vector<double> ticks(double low, double high, int count) {
     return marks;
 }
 
+std::vector<double> log_ticks(double low, double high) {
+    assert(0 < low && low < high);
+    std::vector<double> marks;
+    const double first = std::floor(std::log10(low)), last = std::ceil(std::log10(high));
+    for (double decade = first; decade <= last; ++decade)
+        for (const double round : {1.0, 2.0, 5.0})
+            if (round == 1 || last - first <= 5) marks.push_back(round * std::pow(10, decade));
+    while (marks.size() > 1 && marks[1] <= low) marks.erase(marks.begin());
+    while (marks.size() > 1 && marks[marks.size() - 2] >= high) marks.pop_back();
+    return marks;
+}
+
 std::string to_svg(const Plot& plot) {
     double x_low = 0, x_high = 0, y_low = 0, y_high = 0;
     bool any = false;
     for (const Plot::Line& line : plot.lines)
         for (const Plot::Point& p : line.points) {
             x_low = any ? std::min(x_low, p.x) : p.x, x_high = any ? std::max(x_high, p.x) : p.x;
-            y_low = std::min(y_low, p.y), y_high = std::max(y_high, p.y);
+            y_low = any || !plot.logarithmic ? std::min(y_low, p.y) : p.y, y_high = std::max(y_high, p.y);
             any = true;
         }
-    const Axis x = axis(x_low, x_high, left, width - right, 10), y = axis(y_low, y_high, height - bottom, top, 6);
-    std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 720 360\" width=\"720\" height=\"360\" font-family=\"sans-serif\" "
-                      "font-size=\"12\" fill=\"#222\">\n<rect width=\"720\" height=\"360\" fill=\"#fff\"/>\n";
+    const std::vector<size_t> legends = legend_lines(plot);
+    const double top = 40 + legend_line * double(legends.size() - 1), height = top + plot_height + bottom;
+    const Axis x = axis(x_low, x_high, left, width - right, 10, plot.logarithmic), y = axis(y_low, y_high, height - bottom, top, 6, plot.logarithmic);
+    const std::string size = number(height);
+    std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 720 " + size + "\" width=\"720\" height=\"" + size +
+                      "\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#222\">\n<rect width=\"720\" height=\"" + size + "\" fill=\"#fff\"/>\n";
     svg += text_at(left, 22, "start", plot.title, " font-size=\"14\"");
     for (const double mark : x.marks) {
         svg += stroke(x(mark), top, x(mark), height - bottom, "#eee", 1);
@@ -86,18 +134,24 @@ std::string to_svg(const Plot& plot) {
     }
     svg += text_at((left + width - right) / 2, height - 12, "middle", plot.x_label);
     svg += text_at(16, (top + height - bottom) / 2, "middle", plot.y_label, " transform=\"rotate(-90 16 " + number((top + height - bottom) / 2) + ")\"");
-    double legend = width - right;
-    for (auto line = plot.lines.rbegin(); line != plot.lines.rend(); ++line) {
-        svg += text_at(legend, 22, "end", line->name);
-        legend -= 8 * double(line->name.size()) + 8;
-        svg += stroke(legend - 16, 18, legend, 18, line->colour, 2);
-        legend -= 28;
+    size_t end = 0;
+    for (size_t i = 0; i < legends.size(); ++i) {
+        const size_t first = end;
+        end += legends[i];
+        double legend = width - right;
+        for (size_t l = end; l-- > first;) {
+            const Plot::Line& line = plot.lines[l];
+            svg += text_at(legend, 22 + legend_line * double(i), "end", line.name);
+            legend -= name_width(line) - 28;
+            svg += stroke(legend - 16, 18 + legend_line * double(i), legend, 18 + legend_line * double(i), line.colour, 2);
+            legend -= 28;
+        }
     }
     for (const Plot::Line& line : plot.lines) {
         if (line.points.empty()) continue;
-        svg += "<path fill=\"none\" stroke=\"" + line.colour + "\" stroke-width=\"1.5\" stroke-linejoin=\"round\" d=\"";
-        for (size_t i = 0; i < line.points.size(); ++i) svg += (i ? "L" : "M") + number(x(line.points[i].x)) + " " + number(y(line.points[i].y));
-        svg += "\"/>\n";
+        const size_t solid = std::min(line.solid, line.points.size());
+        svg += path_of(line, 0, solid, x, y, "");
+        if (solid < line.points.size()) svg += path_of(line, solid - (solid > 0), line.points.size(), x, y, " stroke-dasharray=\"2 4\"");
     }
     return svg + "</svg>\n";
 }

@@ -42,6 +42,8 @@ const std::vector<Bench>& benches() {
          {"--animation", "--frames", "--csv", "--plot", "--arity"}},
         {"manylods-ism", "imperfect shadow maps with the points a map that take ManyLoDs' time, diffuse and glossy", bench_equal_time, {"--images", "--arity"}},
         {"manylods-arity", "trees of arity 2, 4 and 8: what they take, to refit and to be cut, from the roots and from the frame before", bench_arity},
+        {"megaviews-views", "maps of up to a million views: drawn for many at once, against ManyLoDs and all triangles", bench_megaviews,
+         {"--csv", "--plot", "--arity", "--distributions", "--measured"}, 16, 2.0f},
         {"sort", "radix sorts of keys with payload: the device's, in several shapes, against the host's", bench_sort, {"--items"}},
         {"octree", "a sparse octree over points of a scene's surface, built on the device and on the host", bench_octree, {"--depth"}},
         {"stability", "a scene scaled, far from the origin, and on a floor that is much larger: where images suffer", bench_stability, {"--arity"}},
@@ -58,8 +60,8 @@ struct Arguments {
 };
 
 void print_row(const BenchRow& row) {
-    std::printf("%-20s %7llu views  %9.1f ms [%.1f … %.1f]", row.technique.c_str(), static_cast<unsigned long long>(row.views),
-                row.ms.median(), *std::min_element(row.ms.ms.begin(), row.ms.ms.end()), *std::max_element(row.ms.ms.begin(), row.ms.ms.end()));
+    std::printf("%-20s %7llu views  %s%9.1f ms [%.1f … %.1f]", row.technique.c_str(), static_cast<unsigned long long>(row.views),
+                row.extrapolated ? "extrapolated " : "", row.ms.median(), *std::min_element(row.ms.ms.begin(), row.ms.ms.end()), *std::max_element(row.ms.ms.begin(), row.ms.ms.end()));
     for (const auto& [name, samples] : row.stages) std::printf("  %s %.1f", name.c_str(), samples.median());
     for (const auto& [name, value] : row.counters) std::printf("  %s %.6g", name.c_str(), value);
     for (const auto& [name, value] : row.error) std::printf("  %s %.4g", name.c_str(), value);
@@ -87,7 +89,10 @@ void run(const Arguments& arguments, const CLI::App& command) {
     engine::Device device({.select = arguments.device, .validation = false, .memory_limit = arguments.memory_mib << 20});
     std::printf("device: %s, %s\n", device.info().name.c_str(), device.info().driver_version.c_str());
     std::string lines;
-    bench->run(device, arguments.options, [&](const BenchRow& row) {
+    BenchOptions options = arguments.options;
+    if (bench->map_size && !command.count("--map-size")) options.map_size = *bench->map_size;
+    if (bench->epsilon && !command.count("--epsilon")) options.epsilon = *bench->epsilon;
+    bench->run(device, options, [&](const BenchRow& row) {
         print_row(row);
         lines += row.json(device.info()).dump() + "\n";
     });
@@ -107,8 +112,8 @@ void add_bench(CLI::App& app) {
     bench->add_option("--views", o.views, "numbers of views, separated by commas")->delimiter(',')->check(CLI::Range(1u, 1u << 20));
     bench->add_option("--samples", o.log2_samples, "log2 of the number of surface samples (20)")->check(CLI::Range(0u, 26u));
     bench->add_option("--arity", o.arity, "children of a node of the tree: 2, 4 or 8 (8)")->check(CLI::IsMember({2u, 4u, 8u}));
-    bench->add_option("--map-size", o.map_size, "texels a side of a half map (32)")->check(CLI::Range(2u, 1024u));
-    bench->add_option("--epsilon", o.epsilon, "criterion, texels (1)")->check(CLI::Range(0.01f, 1000.0f));
+    bench->add_option("--map-size", o.map_size, "texels a side of a half map (32; megaviews-views: 16)")->check(CLI::Range(2u, 1024u));
+    bench->add_option("--epsilon", o.epsilon, "criterion, texels (1; megaviews-views: 2)")->check(CLI::Range(0.01f, 1000.0f));
     bench->add_option("--repeat", o.repeats, "measured runs of each row, after a warm-up (5)")->check(CLI::Range(1u, 1000u));
     bench->add_option("--memory-limit", arguments->memory_mib, "MiB of device memory (all)")->check(CLI::Range(1u, 1u << 24));
     bench->add_option("--seed", o.seed, "seed (1)");
@@ -116,8 +121,12 @@ void add_bench(CLI::App& app) {
     bench->add_option("--frames", o.frames, "manylods-fig8: of the clip, 1/24 s each (48)")->check(CLI::Range(1u, 100000u));
     bench->add_option("--items", o.items, "sort: numbers of keys, separated by commas (65536,1048576,4194304)")->delimiter(',')->check(CLI::Range(1u, 1u << 26));
     bench->add_option("--depth", o.depth, "octree: levels below the root (10)")->check(CLI::Range(0u, 21u));
-    bench->add_option("--csv", o.csv, "manylods-fig8: write a line for each frame");
-    bench->add_option("--plot", o.plot, "manylods-fig8: draw the cuts' times over the frames, as SVG");
+    bench->add_option("--csv", o.csv, "manylods-fig8: write a line for each frame; megaviews-views: for each row");
+    bench->add_option("--distributions", o.distributions, "megaviews-views: of views, separated by commas: 1-bounce, 4-bounce, random (all)")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"1-bounce", "4-bounce", "random"}));
+    bench->add_option("--measured", o.measured, "megaviews-views: the most views that ManyLoDs draws; more are extrapolated (65536)")->check(CLI::Range(1u, 1u << 20));
+    bench->add_option("--plot", o.plot, "manylods-fig8: draw the cuts' times over the frames, as SVG; megaviews-views: the maps' over views");
     bench->add_option("--images", o.images, "manylods-ism: a folder for the images that are compared, as EXR and PNG");
     bench->add_option("--device", arguments->device, "part of a device's name, or its index");
     bench->callback([arguments, bench] { run(*arguments, *bench); });

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,8 @@ struct BenchOptions {
     uint32_t frames = 48;
     std::vector<uint32_t> items;    // empty: the experiment's own
     uint32_t depth = 10;            // of an octree
+    std::vector<std::string> distributions;  // of views; empty: all that the experiment has
+    uint32_t measured = 65536;      // views: beyond that what draws each view for itself is extrapolated
     std::string csv, plot, images;  // empty: not written
 };
 
@@ -62,6 +65,8 @@ struct Bench {
     const char* what;
     void (*run)(engine::Device& device, const BenchOptions& options, const RowSink& sink);
     std::vector<std::string> own = {};  // options that it takes and others do not
+    std::optional<uint32_t> map_size = {};  // what it has where others have 32 texels
+    std::optional<float> epsilon = {};      // and 1
 };
 const std::vector<Bench>& benches();
 
@@ -77,6 +82,8 @@ void bench_fig8(engine::Device& device, const BenchOptions& options, const RowSi
 void bench_arity(engine::Device& device, const BenchOptions& options, const RowSink& sink);
 // bench/equal_time.cpp
 void bench_equal_time(engine::Device& device, const BenchOptions& options, const RowSink& sink);
+// bench/megaviews.cpp
+void bench_megaviews(engine::Device& device, const BenchOptions& options, const RowSink& sink);
 // bench/octree.cpp
 void bench_octree(engine::Device& device, const BenchOptions& options, const RowSink& sink);
 // bench/sort.cpp
