@@ -23,7 +23,7 @@ namespace {
 using passes::MapMethod;
 
 constexpr double fit_from = 65536;          // views: the exponent is fitted from here on
-constexpr uint32_t most_brute = 1024;       // views that all triangles are drawn for
+constexpr uint32_t most_brute = 1024;       // views that all triangles are drawn for; where all numbers are larger they are left out
 constexpr uint32_t most_compared = 4096;    // views of which irradiance is gathered
 constexpr uint32_t width = 64, height = 36; // pixels that gather it
 
@@ -106,6 +106,7 @@ public:
             const std::vector<vec4> reference = count == counts.front() && count <= most_compared ? irradiance(lights, nullptr, count) : std::vector<vec4>();
             double rival_ms = 0, rival_bytes = 0, rival_pairs = 0;
             for (const Technique& technique : techniques) {
+                if (technique.method == MapMethod::brute && counts.front() > most_brute) continue;
                 const bool measured = technique.method == MapMethod::megaviews || count == counts.front() ||
                                       count <= (technique.method == MapMethod::brute ? most_brute : options_.measured);
                 BenchRow row = measured ? measure_maps(technique, distribution, lights, count) : extrapolated(largest.at(technique.name), count);
@@ -127,6 +128,7 @@ public:
             }
         }
         for (const Technique& technique : techniques) {
+            if (!lines.contains(technique.name)) continue;
             Plot::Line& line = lines[technique.name];
             line.name = std::string(technique.name) + " " + distribution.name, line.colour = technique.colours[d];
             lines_.push_back(std::move(line));
