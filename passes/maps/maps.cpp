@@ -63,7 +63,8 @@ bool ViewMaps::is_handy(uint32_t views) const {
 // epsilon of 2 texels (Sponza, nave) and 1.6 at 1, in Sponza and the atrium; the number falls with the square of epsilon.
 uint64_t ViewMaps::groups_guess(uint32_t views) const {
     const double epsilon = std::clamp(settings_.epsilon, 0.5f, 16.0f);
-    return std::max<uint64_t>(uint64_t(5.0 / (epsilon * epsilon) * double(atlas_words(views, settings_.map_size))), 4096);
+    const double a_texel = shared_ ? 1.25 : 5.0;  // views that share have fewer groups, and want larger batches: each batch goes through all maps above its views
+    return std::max<uint64_t>(uint64_t(a_texel / (epsilon * epsilon) * double(atlas_words(views, settings_.map_size))), 4096);
 }
 
 void ViewMaps::halve() { batch_ = round_up(batch_ / 2, multiple_); }
