@@ -16,6 +16,13 @@ std::string number(double value) {
     return text;
 }
 
+// Of a logarithmic axis, whose numbers are long: 20k, 5M.
+std::string mark_number(double value, bool logarithmic) {
+    if (logarithmic && value >= 1e6) return number(value / 1e6) + "M";
+    if (logarithmic && value >= 1e3) return number(value / 1e3) + "k";
+    return number(value);
+}
+
 std::string escaped(const std::string& text) {
     std::string out;
     for (const char c : text) {
@@ -126,11 +133,11 @@ std::string to_svg(const Plot& plot) {
     svg += text_at(left, 22, "start", plot.title, " font-size=\"14\"");
     for (const double mark : x.marks) {
         svg += stroke(x(mark), top, x(mark), height - bottom, "#eee", 1);
-        svg += text_at(x(mark), height - bottom + 16, "middle", number(mark));
+        svg += text_at(x(mark), height - bottom + 16, "middle", mark_number(mark, plot.logarithmic));
     }
     for (const double mark : y.marks) {
         svg += stroke(left, y(mark), width - right, y(mark), mark == 0 ? "#222" : "#ddd", 1);
-        svg += text_at(left - 6, y(mark) + 4, "end", number(mark));
+        svg += text_at(left - 6, y(mark) + 4, "end", mark_number(mark, plot.logarithmic));
     }
     svg += text_at((left + width - right) / 2, height - 12, "middle", plot.x_label);
     svg += text_at(16, (top + height - bottom) / 2, "middle", plot.y_label, " transform=\"rotate(-90 16 " + number((top + height - bottom) / 2) + ")\"");

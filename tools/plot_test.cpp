@@ -52,6 +52,8 @@ TEST(plot, logarithmic_axes_and_dots_from_where_nothing_was_measured) {
             (path.attribute("stroke-dasharray") ? dotted : solid).push_back(path.attribute("d").value());
     EXPECT_EQ(solid, (std::vector<std::string>{"M64 312L384 176"}));
     EXPECT_EQ(dotted, (std::vector<std::string>{"M384 176L704 40", "M64 176L704 40"}));
+    plot.lines = {{"long", "#000", {{500, 100}, {2e6, 2e6}}}};
+    for (const char* mark : {">500<", ">1k<", ">200k<", ">2M<"}) EXPECT_NE(to_svg(plot).find(mark), std::string::npos) << mark;
     plot.lines.clear();
     EXPECT_EQ(to_svg(plot).find("nan"), std::string::npos);
     plot.lines = {{"x", "#000", {{4, 3}}}};
