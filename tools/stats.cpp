@@ -51,7 +51,7 @@ ordered_json counters_json(const FrameRun& frame) {
             counters["list_peak"] = maps->list_peak;
         }
         if (maps->pairs) {
-            counters["pairs"] = maps->pairs, counters["pairs_culled"] = maps->pairs_culled, counters["pairs_rendered"] = maps->pairs_rendered;
+            counters["pairs"] = maps->pairs, counters["pairs_culled"] = maps->pairs_culled, counters["pairs_edge_on"] = maps->pairs_edge_on, counters["pairs_rendered"] = maps->pairs_rendered;
             counters["views_per_rendered_pair"] = maps->pairs_rendered ? double(maps->views_of_rendered) / double(maps->pairs_rendered) : 0.0;
             counters["shared_maps"] = maps->shared_maps;
         }

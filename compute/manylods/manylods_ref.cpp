@@ -11,6 +11,7 @@ HostTree::HostTree(engine::Device& device, const Bsh& tree) : BshShape(tree.shap
     if (tree.empty()) return;
     frames = engine::download(device, tree.frames());
     spheres = engine::download(device, tree.spheres());
+    cones = engine::download(device, tree.cones());
 }
 
 void PrintTo(const NodeView& nv, std::ostream* out) {

@@ -13,6 +13,7 @@ namespace myriad::compute {
 struct HostTree : BshShape {
     std::vector<vec4> frames;
     std::vector<uvec2> spheres;
+    std::vector<uint> cones;
 
     HostTree() = default;
     HostTree(engine::Device& device, const Bsh& tree);

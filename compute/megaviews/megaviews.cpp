@@ -26,8 +26,9 @@ void MegaViews::record(engine::Recorder& recorder, AppendLists& lists, const Meg
     recorder.fill(one_, in.tree.empty() ? 0 : 1);
     uint32_t step = 0;
     const auto push = [&](const AppendRef& ref) {
-        refs_.span()[0] = {.nodes = recorder.read(in.views.nodes()), .groups = recorder.read(in.views.groups()), .counts = {recorder.write(counts_).address}};
         const BshRef tree = in.tree.empty() ? BshRef{} : in.tree.read(recorder);
+        refs_.span()[0] = {.nodes = recorder.read(in.views.nodes()), .groups = recorder.read(in.views.groups()), .counts = {recorder.write(counts_).address},
+                           .cones = tree.cones};
         return PairPush{.lists = ref, .frames = tree.frames, .spheres = tree.spheres, .memory = recorder.read(refs_), .leaves = tree.leaves,
                         .blocks = tree.blocks, .epsilon = in.epsilon, .map_size = in.map_size, .capacity = in.views.capacity(), .first = in.first,
                         .end = in.first + in.limit, .step = step};
@@ -47,9 +48,9 @@ PairReport MegaViews::report() const {
     const auto words = counts_report_.span();
     const auto number = [&](uint64_t at) { return uint64_t(words[at + 1]) << 32 | words[at]; };
     for (uint64_t at = 0; at < words.size() && number(at) > 0; at += step_words) {
-        const PairReport::Step s{number(at), number(at + 2), number(at + 4), number(at + 6)};
+        const PairReport::Step s{number(at), number(at + 2), number(at + 4), number(at + 6), number(at + 8)};
         report.steps.push_back(s);
-        report.total.tested += s.tested, report.total.culled += s.culled, report.total.rendered += s.rendered, report.total.shared += s.shared;
+        report.total.tested += s.tested, report.total.culled += s.culled, report.total.edge_on += s.edge_on, report.total.rendered += s.rendered, report.total.shared += s.shared;
     }
     return report;
 }

@@ -21,7 +21,7 @@ struct MegaViewsInputs {
 // What became of the pairs, step by step: the more steps, the deeper in either tree.
 struct PairReport {
     struct Step {
-        uint64_t tested = 0, culled = 0, rendered = 0;
+        uint64_t tested = 0, culled = 0, edge_on = 0, rendered = 0;  // edge-on ones would be rendered, and cover nothing
         uint64_t shared = 0;        // views below the rendered pairs' view nodes, of those that were asked for
     };
     std::vector<Step> steps;        // until nothing was open

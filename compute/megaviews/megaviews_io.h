@@ -7,12 +7,14 @@
 #include "compute/manylods/cut_io.h"
 #include "compute/view_tree/view_tree_io.h"
 #include "compute/views/paraboloid.h"
+#include "compute/views/splat_plane.h"
 
 MYRIAD_BEGIN
 // Of one step of the traversal. Low and high words.
 struct PairCounts {
     uint tested[2];      // pairs
     uint culled[2];
+    uint edge_on[2];     // would be rendered, and cover nothing
     uint rendered[2];
     uint sharing[2];      // views below the view nodes of rendered pairs
 };
@@ -23,6 +25,7 @@ struct PairRefs {
     Views nodes;         // of the view tree
     ViewGroups groups;
     PairCountsArray counts;  // by step
+    Uints cones;         // of the scene's tree, by slot
 };
 MYRIAD_ARRAY(PairRefsArray, PairRefs, 8)
 
@@ -68,10 +71,14 @@ MYRIAD_FN uint classify_pair(View view, float view_radius, Sphere sphere, bool l
     if (leaf && view_radius == 0.0f) return pair_drawn;
     return pair_fits(d, sphere.radius, view_radius, map_size, epsilon) ? pair_drawn : pair_open;
 }
+// Whether a pair that is drawn covers nothing, since its node is seen edge-on: so are most nodes near to a VPL, those of its own wall.
+MYRIAD_FN bool pair_edge_on(View view, Sphere sphere, uint cone) {
+    return splat_plane(sphere.center - view.position, sphere.radius, bsh_cone_axis(cone), (cone >> 24) == 255u).height == 0.0f;
+}
 // Which side of an open pair is split (figure 8): the larger. A view node that is one place has nothing to split that matters.
 MYRIAD_FN bool pair_splits_views(float view_radius, float radius, bool leaf) { return view_radius > 0.0f && (leaf || view_radius > radius); }
 
-// Of up to eight pairs in one word: drawn | culled << 8 | open << 16, a bit each.
+// Of up to eight pairs in one word: drawn | culled << 8 | open << 16, a bit each; and how many are edge-on << 25.
 MYRIAD_FN uint pair_bit(uint where) { return where == pair_drawn ? 0x1u : where == pair_culled ? 0x100u : 0x10000u; }
 MYRIAD_END
 

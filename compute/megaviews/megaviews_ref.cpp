@@ -28,8 +28,9 @@ struct Walk {
         const float radius = views.radius(node);
         const uint where = classify_pair(views.nodes[node], radius, sphere, leaf, bsh_height(slot, tree), epsilon, map_size);
         if (where != pair_open) {
-            out.pairs.push_back({node, slot, where == pair_culled});
-            if (where == pair_drawn) out.shared += wanted(node);
+            const bool edge_on = where == pair_drawn && slot != tree.root() && pair_edge_on(views.nodes[node], sphere, tree.cones[slot]);
+            out.pairs.push_back({node, slot, where == pair_culled, edge_on});
+            if (where == pair_drawn && !edge_on) out.shared += wanted(node);
         } else if (pair_splits_views(radius, sphere.radius, leaf)) {
             const ViewGroup& group = views.group(node);
             for (uint child = group.first_child; child < group.first_child + group.children; ++child) visit(slot, child);

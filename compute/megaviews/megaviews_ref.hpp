@@ -13,7 +13,7 @@ namespace myriad::compute {
 // A terminal pair; ordered by view node, then slot.
 struct TerminalPair {
     uint node, slot;
-    bool culled;
+    bool culled, edge_on = false;
     auto operator<=>(const TerminalPair&) const = default;
 };
 void PrintTo(const TerminalPair& pair, std::ostream* out);
@@ -22,7 +22,7 @@ struct PairsRef {
     std::vector<TerminalPair> pairs;  // sorted
     uint64_t tested = 0, shared = 0;
 };
-// By recursion, for views [first, end) along the curve.
+// `rendered`: neither culled nor edge-on. By recursion, for views [first, end) along the curve.
 PairsRef pairs_ref(const HostTree& tree, const HostViewTree& views, uint first, uint end, float epsilon, uint map_size);
 
 // Rendered pairs of a kept list, taken apart and sorted.

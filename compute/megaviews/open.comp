@@ -29,9 +29,10 @@ void main() {
                 const uint child = group.first_child + i;
                 const ViewBound part = view_bound(child);
                 if (part.views == 0u) continue;
-                const uint where = classify_pair(memory.nodes.at[child], part.radius, sphere, leaf, height, push.epsilon, push.map_size);
-                found |= pair_bit(where) << i;
-                if (where == pair_drawn) sharing += part.views;
+                const View lower = memory.nodes.at[child];
+                const uint fate = pair_fate(classify_pair(lower, part.radius, sphere, leaf, height, push.epsilon, push.map_size), lower, sphere, slot, i);
+                found += fate;
+                if ((fate & 0xffu) != 0u) sharing += part.views;
             }
         } else {
             const uint block = bsh_block_of(slot, shape());
@@ -42,13 +43,15 @@ void main() {
             [[unroll]] for (uint i = 0u; i < bsh_arity; ++i) {
                 const uvec2 code = push.spheres.at[bsh_arity * block + i];
                 if (bsh_is_absent(code)) continue;
-                found |= pair_bit(classify_pair(view, bound.radius, bsh_decode(frame, code), leaves, below, push.epsilon, push.map_size)) << i;
+                const Sphere lower = bsh_decode(frame, code);
+                const uint where = classify_pair(view, bound.radius, lower, leaves, below, push.epsilon, push.map_size);
+                found += pair_fate(where, view, lower, bsh_arity * block + i, i);
             }
             sharing = bitCount(found & 0xffu) * bound.views;
         }
     }
     if (append_pass != append_pass_write)
-        count_up(push.step, bitCount(found & 0xffffffu), bitCount(found & 0xff00u), bitCount(found & 0xffu), sharing);
+        count_up(push.step, bitCount(found & 0xffffffu) + count_edge_on(found), bitCount(found & 0xff00u), count_edge_on(found), bitCount(found & 0xffu), sharing);
     found = append_payload(item, found, push.lists);
 
     uint drawn = found & 0xffu;

@@ -17,7 +17,7 @@ void main() {
             found = pair_bit(classify_pair(memory.nodes.at[node], bound.radius, scene_sphere(slot), false, bsh_height(slot, shape()), push.epsilon, push.map_size));
     }
     if (append_pass != append_pass_write)
-        count_up(push.step, bitCount(found), (found >> 8) & 1u, found & 1u, (found & 1u) * views);
+        count_up(push.step, bitCount(found), (found >> 8) & 1u, 0u, found & 1u, (found & 1u) * views);
     found = append_payload(item, found, push.lists);
     const bool drawn = (found & 1u) != 0u;
     const bool open = (found >> 16) != 0u;

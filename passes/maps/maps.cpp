@@ -24,7 +24,7 @@ MapCounters& MapCounters::operator+=(const MapCounters& other) {
     node_views += other.node_views, invalid += other.invalid, cut += other.cut, groups += other.groups;
     list_peak = std::max(list_peak, other.list_peak), list_capacity = std::max(list_capacity, other.list_capacity);
     batches += other.batches, redone += other.redone, triangle_views += other.triangle_views;
-    pairs += other.pairs, pairs_culled += other.pairs_culled, pairs_rendered += other.pairs_rendered, views_of_rendered += other.views_of_rendered;
+    pairs += other.pairs, pairs_culled += other.pairs_culled, pairs_edge_on += other.pairs_edge_on, pairs_rendered += other.pairs_rendered, views_of_rendered += other.views_of_rendered;
     shared_maps += other.shared_maps;
     if (other.maps_drawn) maps_drawn = maps_drawn.value_or(0) + *other.maps_drawn;
     return *this;
@@ -148,7 +148,7 @@ bool ViewMaps::accept() {
     counters_.groups += report.kept;
     if (shared_) {
         const compute::PairReport::Step pairs = shared_->pairs().total;
-        counters_.pairs += pairs.tested, counters_.pairs_culled += pairs.culled, counters_.pairs_rendered += pairs.rendered;
+        counters_.pairs += pairs.tested, counters_.pairs_culled += pairs.culled, counters_.pairs_edge_on += pairs.edge_on, counters_.pairs_rendered += pairs.rendered;
         counters_.views_of_rendered += pairs.shared, counters_.shared_maps += shared_->shared_needed();
         return true;
     }

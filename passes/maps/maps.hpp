@@ -61,7 +61,7 @@ struct MapCounters {
     uint64_t triangle_views = 0;  // brute: triangles, each in every view
     // megaviews: pairs of scene nodes and view nodes that were tested, and what became of them; views that the rendered ones stand for; maps of view
     // nodes with several views.
-    uint64_t pairs = 0, pairs_culled = 0, pairs_rendered = 0, views_of_rendered = 0, shared_maps = 0;
+    uint64_t pairs = 0, pairs_culled = 0, pairs_edge_on = 0, pairs_rendered = 0, views_of_rendered = 0, shared_maps = 0;
 
     MapCounters& operator+=(const MapCounters& other);
 };

@@ -7,6 +7,7 @@
 #include "compute/opacity/opacity_io.h"
 #include "compute/views/paraboloid.h"
 #include "compute/views/parallel.h"
+#include "compute/views/splat_plane.h"
 
 MYRIAD_BEGIN
 const uint atlas_nothing = 0x7f800000u;  // +infinity: no surface in this texel
@@ -14,10 +15,6 @@ const uint atlas_nothing = 0x7f800000u;  // +infinity: no surface in this texel
 // How much larger than its box a node is drawn, in radii: the box's codes are good to 1/511 of the radius and the plane's
 // normal to 1/2047, so a thin box may lie beside its own plane by their sum and more at its rim.
 const float splat_margin = 1.0f / 128.0f;
-
-// A view this near to a node's plane, in radii, sees the node edge-on: it covers nothing. A VPL stands a hair off its own wall, and
-// the wall's node, whose normal is good to 1/1400 and whose centre to 1/16384, must not be found in front of it.
-const float splat_edge_on = 1.0f / 256.0f;
 
 struct SplatPush {
     Uint2s groups;
@@ -43,20 +40,6 @@ struct SplatClearPush {
     Uints atlas;
     uint views, map_size;
 };
-
-// The plane of a disc or node of this radius at d, as the view sees it; `faces`: it has no normal to speak of, and faces the view.
-struct SplatPlane {
-    vec3 normal;
-    float height;    // d . normal: how far the view lies off the plane; 0: seen edge-on, covers nothing
-};
-MYRIAD_FN SplatPlane splat_plane(vec3 d, float radius, vec3 normal, bool faces) {
-    SplatPlane p;
-    p.normal = normal;
-    if (faces) p.normal = d / sqrt(dot(d, d));
-    p.height = dot(d, p.normal);
-    if (!(abs(p.height) > splat_edge_on * radius)) p.height = 0.0f;
-    return p;
-}
 
 // A node as one view sees it.
 struct Splat {

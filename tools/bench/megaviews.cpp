@@ -141,7 +141,7 @@ public:
 
     std::string csv() const {
         const char* stages[] = {"view tree", "pairs", "cut", "splat", "fuse", "brute"};
-        const char* counters[] = {"node_views", "cut", "pairs", "pairs_culled", "pairs_rendered", "views_per_rendered_pair", "shared_maps", "at_once_pairs_bytes", "at_once_bytes"};
+        const char* counters[] = {"node_views", "cut", "pairs", "pairs_culled", "pairs_edge_on", "pairs_rendered", "views_per_rendered_pair", "shared_maps", "at_once_pairs_bytes", "at_once_bytes"};
         std::string text = "distribution,technique,views,extrapolated,ms";
         for (const char* stage : stages) text += std::string(",") + stage + " ms";
         for (const char* counter : counters) text += std::string(",") + counter;
@@ -248,7 +248,7 @@ private:
         }
         if (row.technique == "manylods") c["node_views"] = double(counters.node_views), c["cut"] = double(counters.cut);
         if (row.technique == "megaviews") {
-            c["pairs"] = double(counters.pairs), c["pairs_culled"] = double(counters.pairs_culled), c["pairs_rendered"] = double(counters.pairs_rendered);
+            c["pairs"] = double(counters.pairs), c["pairs_culled"] = double(counters.pairs_culled), c["pairs_edge_on"] = double(counters.pairs_edge_on), c["pairs_rendered"] = double(counters.pairs_rendered);
             c["views_per_rendered_pair"] = counters.pairs_rendered ? double(counters.views_of_rendered) / double(counters.pairs_rendered) : 0;
             c["shared_maps"] = double(counters.shared_maps);
             atlas += double(counters.shared_maps) * map_bytes + double(device_.memory().at("view tree").peak);
