@@ -3,7 +3,7 @@
 // One step of the double traversal (MegaViews 3.2): each open pair is split on its larger side, and each of the up to eight pairs that come of
 // it is culled, drawn, or open in the next step.
 //
-// Invariant. Every (scene leaf, view) that is wanted is below exactly one among {open pairs} + {culled and drawn pairs so far}.
+// Invariant. Every (scene leaf, view) that is wanted is below exactly one among {open pairs} + {culled, edge-on and drawn pairs so far}.
 #include "compute/megaviews/pairs.glsl"
 
 const uint splits_views = 1u << 24;
