@@ -53,7 +53,7 @@ TEST_F(command_line, bad_usage) {
     refuse(2, {"--paint"}, "myriad -h");
     refuse(2, {"render", "-o", exr}, "SCENE is required; see myriad render -h");
     refuse(2, tiny + Arguments{"-o", exr, "--paint"}, "--paint; see myriad render -h");
-    refuse(2, tiny + Arguments{"-o", exr, "--visibility", "megaviews"}, "manylods, brute, ism, rays, none");
+    refuse(2, tiny + Arguments{"-o", exr, "--visibility", "shadows"}, "manylods, megaviews, brute, ism, rays, none");
     for (const char* later : {"--update", "--coverage", "--primary", "--time-budget", "--target-error"})
         refuse(2, tiny + Arguments{"-o", exr, later, "1"}, later);  // options of the spec that are yet to come
     refuse(2, tiny + Arguments{"-o", exr, "-o", folder / "b.exr"}, "--output is given more than once");
