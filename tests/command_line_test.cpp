@@ -3,10 +3,8 @@
 
 #include <chrono>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <numeric>
-#include <sstream>
 #include <thread>
 
 #include <nlohmann/json.hpp>
@@ -181,6 +179,11 @@ TEST_F(command_line, megaviews) {
     EXPECT_FALSE(json["settings"].contains("update"));
     EXPECT_FALSE(counters.contains("node_views"));
     EXPECT_GT(counters["pairs"], counters["pairs_rendered"]);
+    std::map<std::string, uint64_t> sums;
+    for (const auto& step : counters["pairs_by_step"])
+        for (const auto& [fate, pairs] : step.items()) sums[fate] += pairs.get<uint64_t>();
+    EXPECT_EQ(sums, (std::map<std::string, uint64_t>{{"tested", counters["pairs"]}, {"culled", counters["pairs_culled"]}, {"edge_on", counters["pairs_edge_on"]},
+                                                     {"rendered", counters["pairs_rendered"]}}));
     EXPECT_GE(counters["views_per_rendered_pair"], 1);
     EXPECT_GT(counters["peak_bytes"]["view tree"], 0);
 }

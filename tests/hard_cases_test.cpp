@@ -268,6 +268,24 @@ TEST_F(HardCases, the_same_bits_again_and_in_both_append_modes) {
     }
 }
 
+// Without a filter each pixel shows its own set of VPLs, which other maps leave as it is: the noise of shared maps is that of maps for each view.
+TEST_F(HardCases, shared_maps_leave_each_pixel_its_set) {
+    FrameSettings settings = small();
+    settings.vpls = 512, settings.filter = false, settings.maps.epsilon = 0.5f;
+    const Image maps = render(Kit::room(), settings);
+    settings.visibility = Visibility::megaviews;
+    const Image shared = render(Kit::room(), settings);
+    settings.subset = 0;
+    const Image all = render(Kit::room(), settings);
+    const auto apart = [](const Image& a, const Image& b) {
+        double sum = 0, whole = 0;
+        const auto &x = a.find("indirect.G")->values, &y = b.find("indirect.G")->values;
+        for (size_t i = 0; i < x.size(); ++i) sum += std::abs(double(x[i]) - y[i]), whole += x[i];
+        return sum / whole;
+    };
+    EXPECT_LT(apart(maps, shared), 0.1 * apart(maps, all)) << "sets' own noise is " << apart(maps, all);
+}
+
 TEST_F(HardCases, little_memory_gives_the_same_image_in_batches) {
     for (const Visibility visibility : {Visibility::manylods, Visibility::megaviews}) {
         SCOPED_TRACE(testing::Message() << "visibility " << int(visibility));

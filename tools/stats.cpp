@@ -54,6 +54,8 @@ ordered_json counters_json(const FrameRun& frame) {
             counters["pairs"] = maps->pairs, counters["pairs_culled"] = maps->pairs_culled, counters["pairs_edge_on"] = maps->pairs_edge_on, counters["pairs_rendered"] = maps->pairs_rendered;
             counters["views_per_rendered_pair"] = maps->pairs_rendered ? double(maps->views_of_rendered) / double(maps->pairs_rendered) : 0.0;
             counters["shared_maps"] = maps->shared_maps;
+            for (const auto& step : maps->pair_steps)
+                counters["pairs_by_step"].push_back({{"tested", step.tested}, {"culled", step.culled}, {"edge_on", step.edge_on}, {"rendered", step.rendered}});
         }
         if (maps->triangle_views) counters["triangle_views"] = maps->triangle_views;
         counters["batches"] = maps->batches;

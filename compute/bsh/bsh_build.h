@@ -10,8 +10,6 @@
 #include "compute/opacity/opacity_io.h"
 
 MYRIAD_BEGIN
-MYRIAD_ARRAY(BshPositions, vec3, 4)
-
 // A parent is larger than what its children need by this factor, so that criteria computed in floating point decrease
 // from parent to child (spec, section 2).
 const float bsh_slack = 1.0f + 1.0f / 65536.0f;
@@ -42,7 +40,7 @@ struct BshLevelPush {
     Float4s merged_boxes;      // by block, two each: low and high corner of the node that owns it
     SurfaceSamples samples;    // leaves only, with the three below
     Uint4s triangles;
-    BshPositions positions;
+    Positions positions;
     Instances instances;       // where triangles are shared
     OpacityRef opacity;        // where some blend
     Uints listed;              // blocks, counted from the level's first

@@ -7,18 +7,6 @@
 
 layout(constant_id = 2) const bool blends = false;  // some surface does
 
-Corners corners_of(uint triangle) {
-    uint stored = triangle;
-    Instance instance;
-    if (instanced) {
-        instance = push.instances.at[find_instance(push.instances, push.instance_count, triangle)];
-        stored = instance.first_triangle + (triangle - instance.first_id);
-    }
-    const uvec4 t = push.triangles.at[stored];
-    const Corners corners = Corners(push.positions.at[t.x], push.positions.at[t.y], push.positions.at[t.z]);
-    return instanced ? instance_corners(instance, corners) : corners;
-}
-
 void main() {
     const uint block = own_block();
     if (bsh_arity * block >= push.nodes) return;
@@ -28,7 +16,7 @@ void main() {
     for (uint i = 0u; i < bsh_arity; ++i) {
         const uint leaf = child_of(block, i);
         const SurfaceSample s = push.samples.at[leaf];
-        const Corners at = corners_of(s.triangle);
+        const Corners at = world_corners(push.instances, push.instance_count, push.triangles, push.positions, s.triangle);
         const vec3 a = at.p0;
         const vec3 b = at.p1;
         const vec3 c = at.p2;

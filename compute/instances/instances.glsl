@@ -18,4 +18,17 @@ uint find_instance(Instances instances, uint count, uint triangle) {
     return low;
 }
 
+// A triangle of the world, wherever its vertices are stored.
+Corners world_corners(Instances instances, uint count, Uint4s triangles, Positions positions, uint triangle) {
+    uint stored = triangle;
+    Instance instance;
+    if (instanced) {
+        instance = instances.at[find_instance(instances, count, triangle)];
+        stored = instance.first_triangle + (triangle - instance.first_id);
+    }
+    const uvec4 t = triangles.at[stored];
+    const Corners corners = Corners(positions.at[t.x], positions.at[t.y], positions.at[t.z]);
+    return instanced ? instance_corners(instance, corners) : corners;
+}
+
 #endif

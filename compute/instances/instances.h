@@ -44,6 +44,7 @@ MYRIAD_FN bool instance_swaps(Instance i) { return (i.flags & (instance_in_world
 struct Corners {
     vec3 p0, p1, p2;
 };
+MYRIAD_ARRAY(Positions, vec3, 4)  // of vertices
 // The corners in the world of a stored triangle.
 MYRIAD_FN Corners instance_corners(Instance i, Corners c) {
     if ((i.flags & instance_in_world) != 0u) return c;

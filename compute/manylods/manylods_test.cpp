@@ -3,51 +3,21 @@
 #include <algorithm>
 #include <limits>
 
+#include "compute/bsh/tree_testing.hpp"
 #include "compute/manylods/manylods_ref.hpp"
-#include "engine/testing.hpp"
 
 namespace myriad::compute {
 namespace {
 
 using engine::same;
 
-struct Soup {
-    std::vector<glm::vec3> positions;
-    std::vector<glm::uvec4> triangles;
-};
-
-class ManyLodsTest : public engine::DeviceTest {
+class ManyLodsTest : public TreeTest {
 protected:
-    float uniform(float lo = -1, float hi = 1) { return std::uniform_real_distribution<float>(lo, hi)(random); }
-    glm::vec3 point(float scale = 1) { return glm::vec3(uniform(), uniform(), uniform()) * scale; }
-
-    Soup random_soup(size_t triangles, float size = 0.1f) {
-        Soup soup;
-        for (size_t i = 0; i < triangles; ++i) {
-            const glm::vec3 middle = point();
-            for (int k = 0; k < 3; ++k) soup.positions.push_back(middle + point(size));
-            soup.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2, 0});
-        }
-        return soup;
-    }
-    View view(glm::vec3 position, glm::vec3 direction, float phi) {
-        return {position, phi == 1 ? 0 : std::cos(phi * 1.5707963f), glm::normalize(direction), phi == 1 ? 1 : std::sin(phi * 1.5707963f)};
-    }
     std::vector<View> random_views(size_t n, float scale = 1.2f) {
-        const float phis[] = {0.5f, 1, 1.5f, 2};  // times pi / 2
+        const float phis[] = {0.5f, 1, 1.5f, 2};  // right angles
         std::vector<View> views;
         for (size_t i = 0; i < n; ++i) views.push_back(view(point(scale), point(), phis[random() % 4]));
         return views;
-    }
-    Bsh build(const Soup& soup, uint32_t log2_samples) {
-        Bsh tree(device, {soup.positions, soup.triangles}, log2_samples, 1);
-        if (tree.empty()) return tree;
-        const auto positions = on_device(std::vector<vec3>(soup.positions));
-        const auto triangles = on_device(std::vector<uvec4>(soup.triangles));
-        engine::Recorder recorder(device);
-        tree.refit(recorder, positions, triangles);
-        recorder.submit_and_wait();
-        return tree;
     }
 
     struct Outcome {

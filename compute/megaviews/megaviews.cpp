@@ -43,6 +43,11 @@ void MegaViews::record(engine::Recorder& recorder, AppendLists& lists, const Meg
     recorder.copy(counts_, counts_report_, counts_report_.bytes());
 }
 
+PairReport::Step& PairReport::Step::operator+=(const Step& other) {
+    tested += other.tested, culled += other.culled, edge_on += other.edge_on, rendered += other.rendered, shared += other.shared;
+    return *this;
+}
+
 PairReport MegaViews::report() const {
     PairReport report;
     const auto words = counts_report_.span();
@@ -50,7 +55,7 @@ PairReport MegaViews::report() const {
     for (uint64_t at = 0; at < words.size() && number(at) > 0; at += step_words) {
         const PairReport::Step s{number(at), number(at + 2), number(at + 4), number(at + 6), number(at + 8)};
         report.steps.push_back(s);
-        report.total.tested += s.tested, report.total.culled += s.culled, report.total.edge_on += s.edge_on, report.total.rendered += s.rendered, report.total.shared += s.shared;
+        report.total += s;
     }
     return report;
 }

@@ -23,6 +23,8 @@ struct PairReport {
     struct Step {
         uint64_t tested = 0, culled = 0, edge_on = 0, rendered = 0;  // edge-on ones would be rendered, and cover nothing
         uint64_t shared = 0;        // views below the rendered pairs' view nodes, of those that were asked for
+
+        Step& operator+=(const Step& other);
     };
     std::vector<Step> steps;        // until nothing was open
     Step total;

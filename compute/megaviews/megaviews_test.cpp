@@ -2,39 +2,20 @@
 
 #include <algorithm>
 
+#include "compute/bsh/tree_testing.hpp"
 #include "compute/manylods/manylods.hpp"
 #include "compute/megaviews/megaviews_ref.hpp"
-#include "engine/testing.hpp"
 
 namespace myriad::compute {
 namespace {
 
 using engine::same;
 
-struct Soup {
-    std::vector<glm::vec3> positions;
-    std::vector<glm::uvec4> triangles;
-};
-
-class MegaViewsTest : public engine::DeviceTest {
+class MegaViewsTest : public TreeTest {
 protected:
-    float uniform(float lo = -1, float hi = 1) { return std::uniform_real_distribution<float>(lo, hi)(random); }
-    glm::vec3 point(float scale = 1) { return glm::vec3(uniform(), uniform(), uniform()) * scale; }
-    Soup random_soup(size_t triangles, float size = 0.1f) {
-        Soup soup;
-        for (size_t i = 0; i < triangles; ++i) {
-            const glm::vec3 middle = point();
-            for (int k = 0; k < 3; ++k) soup.positions.push_back(middle + point(size));
-            soup.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2, 0});
-        }
-        return soup;
-    }
-    View view(glm::vec3 position, glm::vec3 direction, float phi) {
-        return {position, phi == 1 ? 0 : phi == 2 ? -1 : std::cos(phi * 1.5707963f), glm::normalize(direction), phi == 1 ? 1 : phi == 2 ? 0 : std::sin(phi * 1.5707963f)};
-    }
     // In clusters, as light paths' ends are: many see the same thing from nearly the same place.
     std::vector<View> random_views(size_t n, float scale = 1, float cluster = 0.01f) {
-        const float phis[] = {0.3f, 1, 1, 1, 1.5f, 2};  // times pi / 2
+        const float phis[] = {0.3f, 1, 1, 1, 1.5f, 2};  // right angles
         std::vector<View> views;
         glm::vec3 middle{0}, direction{0, 0, 1};
         for (size_t i = 0; i < n; ++i) {
@@ -42,16 +23,6 @@ protected:
             views.push_back(view((middle + point(cluster)) * scale, direction + point(0.3f), phis[random() % 6]));
         }
         return views;
-    }
-    Bsh build(const Soup& soup, uint32_t log2_samples, uint arity = bsh_arity_default) {
-        Bsh tree(device, {soup.positions, soup.triangles}, log2_samples, 1, arity);
-        if (tree.empty()) return tree;
-        const auto positions = on_device(std::vector<vec3>(soup.positions));
-        const auto triangles = on_device(std::vector<uvec4>(soup.triangles));
-        engine::Recorder recorder(device);
-        tree.refit(recorder, positions, triangles);
-        recorder.submit_and_wait();
-        return tree;
     }
 
     struct Outcome {

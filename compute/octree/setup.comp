@@ -9,7 +9,7 @@ layout(push_constant, scalar) uniform Push { OctreeSetupPush push; };
 void main() {
     const uint items = min(push.item_count.at[0], push.max_items);
     const uint columns = sort_columns(sort_tiles(items, push.tile));
-    push.args.at[0] = grid_of((columns * push.group_size + push.workgroup_size - 1u) / push.workgroup_size);
+    push.args.at[0] = sort_grid(columns, push.group_size, push.workgroup_size);
     push.counts.at[octree_count_items] = items;
     push.counts.at[octree_count_counters] = columns * push.levels;
 }

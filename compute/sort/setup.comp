@@ -8,7 +8,7 @@ layout(push_constant, scalar) uniform Push { SortSetupPush push; };
 void main() {
     const uint items = min(push.item_count.at[0], push.max_length);
     const uint columns = sort_columns(sort_tiles(items, push.tile));
-    push.args.at[0] = grid_of((columns * push.group_size + push.workgroup_size - 1u) / push.workgroup_size);
+    push.args.at[0] = sort_grid(columns, push.group_size, push.workgroup_size);
     for (uint bits = 0u; bits <= sort_max_digit_bits; ++bits) push.counts.at[bits] = columns << bits;
     push.counts.at[sort_count_items] = items;
 }

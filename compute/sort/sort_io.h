@@ -12,6 +12,9 @@ MYRIAD_FN uint sort_tiles(uint count, uint tile) { return (count + tile - 1u) / 
 // cache lines of 64 bytes, for at a distance of a power of two all digits of a tile would fall into the same few places of a cache.
 MYRIAD_FN uint sort_columns(uint tiles) { return ((tiles + 15u) / 16u | 1u) * 16u; }
 
+// The grid that gives each column a group (engine/group.glsl).
+MYRIAD_FN DispatchArgs sort_grid(uint columns, uint group_size, uint workgroup_size) { return grid_of((columns * group_size + workgroup_size - 1u) / workgroup_size); }
+
 // "sort/setup": from a length on the device, what the kernels below run over.
 struct SortSetupPush {
     Uints item_count;        // item_count.at[0] items, clamped to max_length

@@ -26,12 +26,6 @@ ViewTree::ViewTree(engine::Device& device, uint32_t capacity)
     assert(capacity > 0 && capacity <= most_views);
 }
 
-uint64_t ViewTree::bytes(const engine::Device& device, uint32_t capacity) {
-    const uint64_t inner = inner_nodes(capacity);
-    return AppendLists::bytes(device, AppendMode::scan, capacity, 1) + uint64_t(capacity) * (2 * sizeof(uvec2) + 2 * sizeof(uint) + sizeof(View)) +
-           inner * (sizeof(View) + sizeof(ViewGroup) + sizeof(ViewBox));
-}
-
 void ViewTree::record(engine::Recorder& recorder, const engine::Array<View>& views, const engine::Array<uint>& count, vec3 low, vec3 high) {
     recorder.dispatch(keys_kernel_,
                       ViewKeysPush{.views = recorder.read(views), .count = recorder.read(count), .keys = recorder.write(keys_),

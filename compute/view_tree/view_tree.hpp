@@ -31,8 +31,6 @@ public:
     ViewLevels read_levels(engine::Recorder& recorder) const { return {recorder.read(levels_).address}; }
     static constexpr uint64_t count_word(uint32_t level) { return 2 * level + 1; }  // of levels(): how many nodes a level has
 
-    static uint64_t bytes(const engine::Device& device, uint32_t capacity);
-
 private:
     uint32_t capacity_;
     engine::Program keys_kernel_, place_, merge_;

@@ -2,21 +2,16 @@
 
 #include <algorithm>
 
+#include "compute/bsh/tree_testing.hpp"
 #include "compute/view_tree/view_tree_ref.hpp"
-#include "engine/testing.hpp"
 
 namespace myriad::compute {
 namespace {
 
-class ViewTreeTest : public engine::DeviceTest {
+class ViewTreeTest : public TreeTest {
 protected:
-    float uniform(float lo = -1, float hi = 1) { return std::uniform_real_distribution<float>(lo, hi)(random); }
-    glm::vec3 point(float scale = 1) { return glm::vec3(uniform(), uniform(), uniform()) * scale; }
-    View view(glm::vec3 position, glm::vec3 direction, float phi) {
-        return {position, phi == 1 ? 0 : phi == 2 ? -1 : std::cos(phi * 1.5707963f), glm::normalize(direction), phi == 1 ? 1 : phi == 2 ? 0 : std::sin(phi * 1.5707963f)};
-    }
     std::vector<View> random_views(size_t n, float scale = 1) {
-        const float phis[] = {0.5f, 1, 1, 1, 2};  // times pi / 2
+        const float phis[] = {0.5f, 1, 1, 1, 2};  // right angles
         std::vector<View> views;
         for (size_t i = 0; i < n; ++i) views.push_back(view(point(scale), point(), phis[random() % 5]));
         return views;

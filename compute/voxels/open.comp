@@ -6,18 +6,6 @@
 #include "compute/voxels/voxels_io.h"
 layout(push_constant, scalar) uniform Push { VoxelsPush push; };
 
-Corners corners_of(uint triangle) {
-    uint stored = triangle;
-    Instance instance;
-    if (instanced) {
-        instance = push.instances.at[find_instance(push.instances, push.instance_count, triangle)];
-        stored = instance.first_triangle + (triangle - instance.first_id);
-    }
-    const uvec4 t = push.triangles.at[stored];
-    const Corners corners = Corners(push.positions.at[t.x], push.positions.at[t.y], push.positions.at[t.z]);
-    return instanced ? instance_corners(instance, corners) : corners;
-}
-
 void main() {
     const uint item = append_item();
     uvec2 pair = uvec2(0u);
@@ -26,7 +14,7 @@ void main() {
     const uvec2 key = voxel_key(pair);
     const uint triangle = voxel_triangle_of(pair);
     uint found = 0u;
-    if (append_decides(item, push.lists)) found = voxel_children(voxel_triangle(corners_of(triangle), push.cube, push.depth), key, push.level, push.depth);
+    if (append_decides(item, push.lists)) found = voxel_children(voxel_triangle(world_corners(push.instances, push.instance_count, push.triangles, push.positions, triangle), push.cube, push.depth), key, push.level, push.depth);
     found = append_payload(item, found, push.lists);
     const bool leaves = push.level + 1u == push.depth;
     const uint children = bitCount(found);

@@ -76,13 +76,11 @@ MYRIAD_FN uint voxel_children(VoxelTriangle t, uvec2 key, uint level, uint depth
 }
 MYRIAD_FN uvec2 voxel_child_key(uvec2 key, uint octant) { return uvec2(key.x << 3 | octant, key.y << 3 | key.x >> 29); }
 
-MYRIAD_ARRAY(VoxelPositions, vec3, 4)
-
 // "voxels/open": pairs of a cell of `level` and a triangle that may meet; those of its children that do are appended: to the next list, or to the kept one where
 // they are leaves. Items of the first step are triangles, with the root.
 struct VoxelsPush {
     AppendRef lists;
-    VoxelPositions positions;
+    Positions positions;
     Uint4s triangles;
     Instances instances;
     OctreeCube cube;

@@ -82,17 +82,7 @@ void main() {
     const bool exists = id < push.triangles;
     GeometryArrays g = push.geometry.at[0];
     Corners p = Corners(vec3(0.0), vec3(0.0), vec3(0.0));
-    if (exists) {
-        uint stored = id;
-        Instance instance;
-        if (instanced) {
-            instance = g.instances.at[find_instance(g.instances, g.instance_count, id)];
-            stored = instance.first_triangle + (id - instance.first_id);
-        }
-        const uvec4 corners = g.triangles.at[stored];
-        p = Corners(g.positions.at[corners.x], g.positions.at[corners.y], g.positions.at[corners.z]);
-        if (instanced) p = instance_corners(instance, p);
-    }
+    if (exists) p = world_corners(g.instances, g.instance_count, g.triangles, Positions(g.positions), id);
     const Sphere sphere = brute_sphere(p);
     for (uint i = push.first_view + slice * push.slice, last = min(i + push.slice, end); i < last; ++i) {
         const View view = view_of(i);

@@ -18,6 +18,8 @@ uint32_t block_for(uint32_t lights, uint32_t subset) {
     return block;
 }
 
+static_assert(compute::ViewTree::most_views <= 1u << gather_listed_bits, "a place has room in a listed light");
+
 bool own_order(const GatheringSettings& settings) {
     return settings.visibility == GatherVisibility::maps && settings.maps.method == MapMethod::megaviews;
 }

@@ -13,14 +13,6 @@ void main() {
     if (i >= push.count) return;
     const SurfaceSample s = push.samples.at[i];
     GeometryArrays g = push.geometry.at[0];
-    uint stored = s.triangle;
-    Instance instance;
-    if (instanced) {
-        instance = g.instances.at[find_instance(g.instances, g.instance_count, s.triangle)];
-        stored = instance.first_triangle + (s.triangle - instance.first_id);
-    }
-    const uvec4 t = g.triangles.at[stored];
-    Corners c = Corners(g.positions.at[t.x], g.positions.at[t.y], g.positions.at[t.z]);
-    if (instanced) c = instance_corners(instance, c);
+    const Corners c = world_corners(g.instances, g.instance_count, g.triangles, Positions(g.positions), s.triangle);
     push.points.at[i] = ism_point(c, s.u, s.v, blends ? opacity_missing_at(push.opacity, s.triangle, s.u, s.v) : 0u);
 }

@@ -26,8 +26,14 @@ MapCounters& MapCounters::operator+=(const MapCounters& other) {
     batches += other.batches, redone += other.redone, triangle_views += other.triangle_views;
     pairs += other.pairs, pairs_culled += other.pairs_culled, pairs_edge_on += other.pairs_edge_on, pairs_rendered += other.pairs_rendered, views_of_rendered += other.views_of_rendered;
     shared_maps += other.shared_maps;
+    add_steps(other.pair_steps);
     if (other.maps_drawn) maps_drawn = maps_drawn.value_or(0) + *other.maps_drawn;
     return *this;
+}
+
+void MapCounters::add_steps(const std::vector<compute::PairReport::Step>& steps) {
+    pair_steps.resize(std::max(pair_steps.size(), steps.size()));
+    for (size_t i = 0; i < steps.size(); ++i) pair_steps[i] += steps[i];
 }
 
 ViewMaps::ViewMaps(engine::Device& device, const MapSettings& settings, uint32_t max_views, uint32_t multiple, const compute::WorldTriangles* world,
@@ -147,7 +153,9 @@ bool ViewMaps::accept() {
     ++counters_.batches;
     counters_.groups += report.kept;
     if (shared_) {
-        const compute::PairReport::Step pairs = shared_->pairs().total;
+        const compute::PairReport found = shared_->pairs();
+        const compute::PairReport::Step& pairs = found.total;
+        counters_.add_steps(found.steps);
         counters_.pairs += pairs.tested, counters_.pairs_culled += pairs.culled, counters_.pairs_edge_on += pairs.edge_on, counters_.pairs_rendered += pairs.rendered;
         counters_.views_of_rendered += pairs.shared, counters_.shared_maps += shared_->shared_needed();
         return true;

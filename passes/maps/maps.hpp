@@ -62,8 +62,10 @@ struct MapCounters {
     // megaviews: pairs of scene nodes and view nodes that were tested, and what became of them; views that the rendered ones stand for; maps of view
     // nodes with several views.
     uint64_t pairs = 0, pairs_culled = 0, pairs_edge_on = 0, pairs_rendered = 0, views_of_rendered = 0, shared_maps = 0;
+    std::vector<compute::PairReport::Step> pair_steps;  // the same by step of the traversal
 
     MapCounters& operator+=(const MapCounters& other);
+    void add_steps(const std::vector<compute::PairReport::Step>& steps);
 };
 
 class ViewMaps {

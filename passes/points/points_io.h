@@ -13,7 +13,7 @@ MYRIAD_BEGIN
 struct PointsScene {
     SurfaceSamples samples;  // in leaf order
     Uint4s triangles;
-    BshPositions positions;
+    Positions positions;
     Instances instances;     // where triangles are shared
     OpacityRef opacity;      // where some surface is not everywhere
     Uints first;             // by leaf, and one more: where its cells begin
