@@ -8,7 +8,7 @@
 #include "engine/testing.hpp"
 #include "passes/fuse/fuse_ref.hpp"
 #include "passes/geometry/test_scene.hpp"
-#include "passes/maps/shared_maps.hpp"
+#include "passes/maps/maps.hpp"
 #include "passes/splat/splat_ref.hpp"
 
 namespace myriad::passes {
@@ -157,6 +157,29 @@ TEST_F(FuseTest, too_few_maps_are_told) {
     EXPECT_EQ(scarce.shared, ample.shared);
     EXPECT_TRUE(std::ranges::all_of(scarce.atlas, [](uint depth) { return depth == atlas_nothing; })) << "nothing may be drawn";
     EXPECT_TRUE(engine::same(ample.atlas, draw(views, 2, 0, ~0u, ample.shared).atlas));
+}
+
+// Views that share more maps than ViewMaps has room for: they are done again with room enough, and then are right.
+TEST_F(FuseTest, maps_grow_to_what_is_shared) {
+    const auto views = clusters(120, 40, 0.003f);
+    const uint n = uint(views.size());
+    const auto on = on_device(views);
+    const auto count = on_device(std::vector<uint>{n});
+    ViewMaps maps(device, {.map_size = size, .epsilon = 2, .method = MapMethod::megaviews, .shared_maps = 2}, n, 1);
+    const MapScene map_scene{.tree = tree.get(), .low = vec3(-2), .high = vec3(2)};
+    engine::Recorder recorder(device);
+    maps.begin(recorder, map_scene, on, count);
+    uint tries = 0;
+    do {
+        maps.record(recorder, map_scene, on, count, 0);
+        recorder.submit_and_wait();
+    } while (++tries < 5 && !maps.accept());
+    ASSERT_EQ(maps.batch(), n);
+    const Outcome ample = draw(views, 2);
+    ASSERT_GT(ample.shared, 2u) << "not a test";
+    EXPECT_GT(tries, 1u);
+    EXPECT_LE(tries, 3u);
+    EXPECT_TRUE(engine::same(ample.atlas, engine::download(device, maps.atlas(), uint64_t(n) * texels)));
 }
 
 // By hand: a wall one metre before the node's middle, seen from a view that stands a tenth nearer.

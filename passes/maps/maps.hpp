@@ -34,6 +34,7 @@ struct MapSettings {
     uint32_t map_size = 32;   // texels a side of a half map
     float epsilon = 2;        // texels
     MapMethod method = MapMethod::manylods;
+    uint32_t shared_maps = 0; // megaviews: room for maps that views share, to begin with; 0: half as many as views, and 64
     IsmSettings ism;
     uint32_t seed = 1;        // ism
     CutUpdate update = CutUpdate::basic;
