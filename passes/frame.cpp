@@ -128,8 +128,12 @@ void Frame::make_tree(compute::Derived& derived) {
 }
 
 Gathering Frame::make_gathering(uint32_t lights, bool far, const compute::WorldTriangles& world, const IsmScene& points) {
+    // Far lights have no place in a tree: they are gathered as they are when nothing else is asked for.
+    const bool picked = settings_.gather != GatherMethod::subset;
     const GatheringSettings settings{.visibility = gather_visibility(settings_.visibility), .width = settings_.width, .height = settings_.height,
-                                     .lights = lights, .subset = settings_.subset, .filter = settings_.filter, .glossy = size_.glossy, .far = far,
+                                     .lights = lights, .method = far ? GatherMethod::subset : settings_.gather,
+                                     .subset = far && picked ? FrameSettings{}.subset : settings_.subset, .distance = settings_.gather_distance,
+                                     .seed = settings_.seed, .filter = settings_.filter, .glossy = size_.glossy, .far = far,
                                      .bias = settings_.bias, .maps = map_settings(settings_, far)};
     return Gathering(device_, settings, bvh_.constants(), &world, &points);
 }

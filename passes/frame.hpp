@@ -49,7 +49,9 @@ struct FrameSettings {
     uint32_t vpls = 4096;         // the most VPLs; 0: no indirect light
     uint32_t bounces = 1;         // diffuse reflections of light before it reaches what the camera sees
     uint32_t seed = 1;
+    GatherMethod gather = GatherMethod::subset;
     uint32_t subset = 256;        // VPLs that each pixel gathers, about; 0: all
+    float gather_distance = std::numeric_limits<float>::infinity();  // culled: metres that VPLs' light reaches
     bool filter = true;
     Primary primary = Primary::rays;
     float primary_pixels = 1;     // points: the largest diameter of a node that is no leaf

@@ -106,6 +106,25 @@ TEST_F(command_line, bench_megaviews_views) {
 }
 
 // For each arity what its tree takes, and its cuts.
+TEST_F(command_line, bench_gather) {
+    refuse(2, {"bench", "manylods", "--picks", "4"}, "--picks is an option of bench gather");
+    refuse(2, {"bench", "gather", "--picks", "0"}, "--picks");
+    succeed({"bench", "gather", "--scene", "builtin:cornell", "--views", "300", "--picks", "8,64", "--bounces", "2", "--samples", "9", "--map-size", "4", "--repeat", "1", "--json",
+             folder / "rows.json"});
+    std::map<std::string, int> rows;
+    for (const auto& row : rows_of(folder / "rows.json")) {
+        EXPECT_EQ(row["bench"], "gather");
+        EXPECT_EQ(row["settings"]["bounces"], 2);
+        const std::string technique = row["technique"];
+        ++rows[technique];
+        const double error = row["error"]["relMSE"];
+        EXPECT_TRUE(technique == "all" ? error == 0 : error > 0 && error < 1) << technique << " " << error;
+        EXPECT_EQ(row["stages"].contains("picks"), technique == "culled" || technique == "tree");
+        EXPECT_TRUE(row["stages"].contains("gather"));
+    }
+    EXPECT_EQ(rows, (std::map<std::string, int>{{"all", 1}, {"subset", 2}, {"culled", 2}, {"tree", 2}}));
+}
+
 TEST_F(command_line, bench_arity) {
     refuse(2, {"bench", "manylods-arity", "--arity", "4"}, "--arity is an option of bench manylods");
     succeed({"bench", "manylods-arity", "--scene", "builtin:cornell?light=point", "--views", "4", "--samples", "7", "--map-size", "4", "--repeat", "2",

@@ -20,7 +20,7 @@ TEST_F(command_line, help_names_every_option) {
     const std::map<std::string, Arguments> options = {
         {"", {"render", "convert", "compare", "bench", "info", "--version"}},
         {"render", {"SCENE",     "--output",   "--png",  "--size",    "--camera",  "--seed",    "--primary", "--primary-pixels", "--visibility", "--append",
-                    "--vpls",    "--bounces",  "--map-size",          "--epsilon", "--samples", "--gather",     "--filter",
+                    "--vpls",    "--bounces",  "--map-size",          "--epsilon", "--samples", "--gather", "--gather-distance",     "--filter",
                     "--vpl-bound", "--bias",   "--exposure",          "--memory-limit",         "--stats",      "--trace",
                     "--aov",     "--cache",  "--instances",         "--sky",     "--device",   "--repeat", "--float", "--animation", "--time", "--frames", "--fps", "--loop", "--camera-path", "--rebuild", "--env", "--env-lights", "--env-rotation", "--env-strength", "--quiet",   "1:1",       "builtin:cornell", "W/sr"}},
         {"compare", {"REF", "TEST", "--json", "--fail-above", "--fail-below", "--layer", "--diff", "--tolerance"}},
@@ -72,6 +72,9 @@ TEST_F(command_line, bad_values) {
         for (const char* value : {"-1", "nan", "inf", "1e99", "x"})
             refuse(2, base + Arguments{option, value}, option + std::string(" '") + value + "': give a number");
     refuse(2, base + Arguments{"--gather", "subset:0"}, "--gather");
+    refuse(2, base + Arguments{"--gather", "tree:4097"}, "from 1 to 4096");
+    refuse(2, base + Arguments{"--gather", "tree:8", "--gather-distance", "2"}, "culled:K");
+    refuse(2, base + Arguments{"--gather", "culled:8", "--update", "incremental"}, "give --update basic");
     refuse(2, base + Arguments{"--filter", "maybe"}, "on, off");
     refuse(2, base + Arguments{"--aov", "Q"}, "indirect");
     refuse(2, base + Arguments{"--exposure", "0", "--png", png}, "--exposure");

@@ -287,10 +287,13 @@ TEST_F(HardCases, shared_maps_leave_each_pixel_its_set) {
 }
 
 TEST_F(HardCases, little_memory_gives_the_same_image_in_batches) {
-    for (const Visibility visibility : {Visibility::manylods, Visibility::megaviews}) {
-        SCOPED_TRACE(testing::Message() << "visibility " << int(visibility));
+    using passes::GatherMethod;
+    for (const auto& [visibility, gather] : {std::pair(Visibility::manylods, GatherMethod::subset), {Visibility::megaviews, GatherMethod::subset},
+                                             {Visibility::manylods, GatherMethod::tree}, {Visibility::megaviews, GatherMethod::culled}}) {
+        SCOPED_TRACE(testing::Message() << "visibility " << int(visibility) << ", gather " << int(gather));
         const Kit kit = Kit::room();
         FrameSettings settings = small(visibility);
+        settings.gather = gather;
         settings.vpls = 512;
         settings.maps.map_size = 32;
         const Image ample = render(kit, settings);
@@ -306,7 +309,7 @@ TEST_F(HardCases, little_memory_gives_the_same_image_in_batches) {
         }();
         uint32_t split = 0;
         const uint64_t most = visibility == Visibility::megaviews ? 3072u << 10 : 1024u << 10;
-        for (uint64_t extra : {most / 2, most}) {
+        for (uint64_t extra : gather == GatherMethod::subset ? std::vector{most / 2, most} : std::vector{most}) {
             engine::Device little({.select = "", .validation = true, .memory_limit = least + extra});
             try {
                 EXPECT_TRUE(identical(ample, render(little, kit, settings))) << extra;
@@ -318,6 +321,36 @@ TEST_F(HardCases, little_memory_gives_the_same_image_in_batches) {
         }
         EXPECT_GT(split, 0u);
     }
+}
+
+// Picked lights bring what all do, whatever tells who sees whom; each pixel within what few picks scatter, so it is the mean that is compared.
+TEST_F(HardCases, picked_lights_bring_what_all_bring) {
+    using passes::GatherMethod;
+    const Kit kit = Kit::room();
+    for (const Visibility visibility : {Visibility::manylods, Visibility::megaviews, Visibility::brute, Visibility::ism, Visibility::rays, Visibility::none}) {
+        FrameSettings settings = small(visibility);
+        settings.width = 48, settings.height = 32, settings.subset = 0, settings.filter = false;
+        const double all = mean(render(kit, settings), "indirect");
+        settings.subset = 48;
+        for (const GatherMethod gather : {GatherMethod::culled, GatherMethod::tree}) {
+            settings.gather = gather;
+            const Image picked = render(kit, settings);
+            expect_finite(picked);
+            EXPECT_NEAR(mean(picked, "indirect") / all, 1, 0.05) << "visibility " << int(visibility) << ", gather " << int(gather);
+        }
+        settings.gather = GatherMethod::tree, settings.subset = 96;  // as many as there are: all
+        EXPECT_EQ(mean(render(kit, settings), "indirect"), all);
+    }
+}
+
+TEST_F(HardCases, picked_lights_where_there_are_none) {
+    FrameSettings settings = small();
+    settings.gather = passes::GatherMethod::tree;
+    Kit dark = Kit::room();
+    dark.scene.lights.clear();
+    expect_finite(render(dark, settings));
+    settings.vpls = uint32_t(compute::ViewTree::most_views) + 1;
+    EXPECT_THROW(render(Kit::room(), settings), InputError);
 }
 
 TEST_F(HardCases, the_comparison_sees_a_bit) {

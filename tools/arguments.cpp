@@ -63,16 +63,6 @@ std::pair<uint32_t, uint32_t> parse_frames(const std::string& option, const std:
     refuse(option, text, "give FIRST-LAST, numbers from 0 to " + std::to_string(most) + ", such as 0-47");
 }
 
-uint32_t parse_gather(const std::string& option, const std::string& text) {
-    constexpr std::string_view prefix = "subset:";
-    uint32_t subset = 0;
-    if (text == "all") return 0;
-    if (text.starts_with(prefix) && read(text.substr(prefix.size()), subset) && subset >= 1) return subset;
-    refuse(option, text, "give all, or subset:K with a whole number K from 1 on, such as subset:256");
-}
-
-std::string show_gather(uint32_t subset) { return subset ? "subset:" + std::to_string(subset) : "all"; }
-
 std::vector<std::string> parse_list(const std::string& option, const std::string& text, const std::vector<std::string>& known) {
     if (text == "all") return known;
     std::vector<std::string> wanted, ordered;

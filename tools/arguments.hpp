@@ -22,9 +22,6 @@ double parse_seconds(const std::string& option, const std::string& text);  // an
 double parse_rate(const std::string& option, const std::string& text);     // a second: from 0.001 to 100000
 // "A-B", or "A" for one: numbers of frames, A <= B < 10^6.
 std::pair<uint32_t, uint32_t> parse_frames(const std::string& option, const std::string& text);
-// "all" is 0, "subset:K" is K, from 1 on.
-uint32_t parse_gather(const std::string& option, const std::string& text);
-std::string show_gather(uint32_t subset);
 // Names between commas, each one of `known` and none twice, in the order of `known`; "all" is all of them.
 std::vector<std::string> parse_list(const std::string& option, const std::string& text, const std::vector<std::string>& known);
 

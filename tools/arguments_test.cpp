@@ -44,9 +44,16 @@ TEST(arguments, rates) {
 }
 
 TEST(arguments, gathers_read_back) {
-    for (uint32_t subset : {0u, 1u, 256u, ~0u}) EXPECT_EQ(parse_gather("--gather", show_gather(subset)), subset);
-    for (const char* text : {"", "subset", "subset:", "subset:0", "subset:-1", "subset:1.5", "subset:4294967296", "culled:8", "ALL"})
-        EXPECT_TRUE(contains(input_error([&] { parse_gather("--gather", text); }), "subset:256")) << text;
+    passes::FrameSettings s;
+    for (const char* text : {"all", "subset:1", "subset:256", "subset:4294967295", "culled:1", "culled:64", "tree:64", "tree:4096"}) {
+        parse_gather("--gather", text, s);
+        EXPECT_EQ(show_gather(s), text);
+    }
+    EXPECT_TRUE(s.gather == passes::GatherMethod::tree && s.subset == 4096);
+    for (const char* text : {"", "subset", "culled", "tree", "forest:8", "ALL"})
+        EXPECT_TRUE(contains(input_error([&] { parse_gather("--gather", text, s); }), "subset:256")) << text;
+    for (const char* text : {"subset:", "subset:0", "subset:-1", "subset:1.5", "subset:4294967296", "culled:0", "culled:4097", "tree:", "tree:x", "tree:4097"})
+        EXPECT_TRUE(contains(input_error([&] { parse_gather("--gather", text, s); }), "whole number")) << text;
 }
 
 TEST(arguments, lists) {
@@ -105,6 +112,9 @@ TEST(render_options, outputs_are_checked) {
         return input_error([&] { check_outputs(*parsed(arguments)); });
     };
     EXPECT_TRUE(contains(refusal({"s.glb"}), "no output"));
+    EXPECT_TRUE(contains(refusal({"s.glb", "-o", exr, "--gather", "tree:8", "--gather-distance", "3"}), "--gather tree:8 has no cut-off"));
+    EXPECT_TRUE(contains(refusal({"s.glb", "-o", exr, "--gather", "tree:8", "--update", "lazy:2"}), "--update lazy:2 needs VPLs"));
+    EXPECT_EQ(parsed({"s.glb", "-o", exr, "--gather", "culled:8", "--gather-distance", "3"})->frame.gather_distance, 3);
     EXPECT_TRUE(contains(refusal({"s.glb", "-o", "a.jpg"}), "unknown format"));
     EXPECT_TRUE(contains(refusal({"s.glb", "--png", "a.exr"}), ".png"));
     EXPECT_TRUE(contains(refusal({"s.glb", "-o", png, "--png", png}), "--png"));

@@ -1,8 +1,10 @@
 #include "tools/render_options.hpp"
 
+#include <cstring>
 #include <filesystem>
 #include <limits>
 #include <set>
+#include <tuple>
 
 #include "scenes/scene.hpp"
 #include "tools/output_file.hpp"
@@ -67,13 +69,20 @@ void add_primary(CLI::App& command, RenderOptions& o) {
     });
 }
 
-void add_technique(CLI::App& command, passes::FrameSettings& s) {
+void add_technique(CLI::App& command, RenderOptions& o) {
+    passes::FrameSettings& s = o.frame;
     add_choice(command, "--visibility", s.visibility, visibilities(),
                "whether a VPL sees a pixel: by its map, drawn from its cut through the scene\n(manylods), of both trees, of the scene and of the VPLs, with what is alike for many drawn once (megaviews), of all triangles (brute) or of few points (ism: imperfect shadow maps); by exact rays, the reference; or taken for granted");
     add_whole(command, "--vpls", s.vpls, 0, 1u << 24, "virtual point lights at most; 0: no indirect light");
     add_whole(command, "--bounces", s.bounces, 0, 64, "diffuse reflections of light before what the camera sees");
-    add_parsed(command, "--gather", "all|subset:K", show_gather(s.subset), "VPLs that each pixel gathers: all, or about K, a different subset\n"
-               "for each pixel of a block", [&s](const std::string& text) { s.subset = parse_gather("--gather", text); });
+    add_parsed(command, "--gather", "all|subset:K|culled:K|tree:K", show_gather(s), "VPLs that each pixel gathers: all; or about K, a different subset for each pixel\n"
+               "of a block; or K of those that may light its tile of pixels at all (culled), or K by what they may bring there (tree)", [&s](const std::string& text) {
+        parse_gather("--gather", text, s);
+    });
+    add_parsed(command, "--gather-distance", "METRES", "", "of culled: VPLs further away bring nothing", [&o](const std::string& text) {
+        o.gather_distance = true;
+        o.frame.gather_distance = parse_number("--gather-distance", text, 1e-12f, 1e12f);
+    });
     add_choice(command, "--filter", s.filter, {{"on", true}, {"off", false}}, "average the subsets of blocks of pixels, across no edge");
     add_choice(command, "--brdf", s.brdf, brdfs(), "how what is seen reflects: as glTF's metallic-roughness materials say, or their diffuse part\nalone, metals black. VPLs are diffuse in either case");
     add_number(command, "--vpl-bound", s.vpl_bound, 1e-30f, 1e30f, "bound of the geometry term, 1/m^2; unless given pi * VPLs / area");
@@ -156,6 +165,23 @@ void parse_update(const std::string& option, const std::string& text, passes::Ma
     maps.update = text == "basic" ? CutUpdate::basic : text == "incremental" ? CutUpdate::incremental : CutUpdate::lazy;
 }
 
+std::string show_gather(const passes::FrameSettings& s) {
+    if (s.subset == 0) return "all";
+    const char* names[] = {"subset:", "culled:", "tree:"};
+    return names[int(s.gather)] + std::to_string(s.subset);
+}
+
+void parse_gather(const std::string& option, const std::string& text, passes::FrameSettings& s) {
+    using passes::GatherMethod;
+    if (text == "all") return void((s.gather = GatherMethod::subset, s.subset = 0));
+    for (const auto& [prefix, method, most] : {std::tuple("subset:", GatherMethod::subset, ~0u), {"culled:", GatherMethod::culled, pick_most}, {"tree:", GatherMethod::tree, pick_most}})
+        if (text.starts_with(prefix)) {
+            s.subset = uint32_t(parse_whole(option + " " + std::string(prefix, std::strlen(prefix) - 1), text.substr(std::strlen(prefix)), 1, most));
+            return void(s.gather = method);
+        }
+    throw InputError(option + " '" + text + "': give all, or subset:K, culled:K or tree:K with a whole number K from 1 on, such as subset:256");
+}
+
 const Choices<uint32_t>& arities() {
     static const Choices<uint32_t> choices = {{"2", 2}, {"4", 4}, {"8", 8}};
     return choices;
@@ -195,7 +221,7 @@ std::shared_ptr<RenderOptions> add_render_options(CLI::App& command) {
     add_choice(command, "--instances", o.instances, sharings(),
                "meshes with several instances: stored once where that saves 16 MiB and a quarter of\nthe scene, wherever it can be, or written out; memory and time differ, the image does not");
     add_primary(command, o);
-    add_technique(command, o.frame);
+    add_technique(command, o);
     add_parsed(command, "--memory-limit", "MiB", "", "for all buffers on the device; unless given, what it has", [&o](const std::string& text) {
         o.device.memory_limit = parse_whole("--memory-limit", text, 1, uint64_t(1) << 30) << 20;
     });
@@ -229,6 +255,11 @@ void check_outputs(const RenderOptions& o) {
         throw InputError("--rebuild is about a scene that moves; play a clip, with --frames, --time or --animation");
     if (o.frame.visibility == passes::Visibility::megaviews && o.frame.maps.update != passes::CutUpdate::basic)
         throw InputError("--update " + show_update(o.frame.maps) + " carries the cuts of manylods from frame to frame; megaviews has none, its trees are walked anew");
+    if (o.gather_distance && o.frame.gather != passes::GatherMethod::culled)
+        throw InputError("--gather-distance is about culled, and --gather " + show_gather(o.frame) + " has no cut-off; give --gather culled:K with it");
+    if (o.frame.gather != passes::GatherMethod::subset && o.frame.maps.update != passes::CutUpdate::basic)
+        throw InputError("--update " + show_update(o.frame.maps) + " needs VPLs in the same places in every frame, and --gather " + show_gather(o.frame) +
+                         " takes them along a curve; give --update basic, or another --gather");
     if (o.primary_pixels && o.frame.primary != passes::Primary::points)
         throw InputError("--primary-pixels is about points, and rays have no size; give --primary points with it");
     const RenderOptions::Environment& e = o.environment;

@@ -27,6 +27,7 @@ struct RenderOptions {
     std::vector<std::string> layers;     // of the EXR beside the beauty: some of layer_names()
     std::optional<float> exposure;       // absent: auto
     std::optional<float> primary_pixels; // absent: what frame says
+    bool gather_distance = false;        // whether it is given; frame says how far
     bool rebuild = false;                // whether it is given; frame says when
     passes::FrameSettings frame;
     engine::DeviceOptions device;
@@ -52,6 +53,9 @@ const Choices<uint32_t>& arities();
 // --update: basic, incremental, lazy or lazy:q.
 std::string show_update(const passes::MapSettings& maps);
 void parse_update(const std::string& option, const std::string& text, passes::MapSettings& maps);
+// --gather: all, subset:K, culled:K or tree:K.
+std::string show_gather(const passes::FrameSettings& settings);
+void parse_gather(const std::string& option, const std::string& text, passes::FrameSettings& settings);
 const Choices<scenes::SkyChoice>& sky_choices();
 const Choices<scenes::Sharing>& sharings();
 const std::vector<std::string>& layer_names();

@@ -151,7 +151,8 @@ ordered_json settings_json(const passes::FrameSettings& s, float vpl_bound, bool
     if (s.vpls == 0 && !environment) return json;
     if (s.vpls > 0) json["bounces"] = s.bounces;
     json["visibility"] = choice_name(visibilities(), s.visibility);
-    json["gather"] = show_gather(s.subset);
+    json["gather"] = show_gather(s);
+    if (std::isfinite(s.gather_distance)) json["gather_distance"] = shortest(s.gather_distance);
     json["filter"] = s.filter;
     if (s.vpls > 0) json["vpl_bound"] = shortest(vpl_bound);
     if (s.visibility == passes::Visibility::rays || s.visibility == passes::Visibility::none) return json;

@@ -16,12 +16,14 @@ uint32_t inner_nodes(uint32_t views) { return 2 * std::max(views, 1u); }
 
 }  // namespace
 
+uint32_t ViewTree::node_count(uint32_t capacity) { return capacity + inner_nodes(capacity); }
+
 ViewTree::ViewTree(engine::Device& device, uint32_t capacity)
     : capacity_(capacity), keys_kernel_(device, compute_kernels, "view_tree/keys"), place_(device, compute_kernels, "view_tree/place"),
       merge_(device, compute_kernels, "view_tree/merge"), split_(device, compute_kernels, "view_tree/split"), sort_(device, capacity, 64),
       lists_(device, AppendMode::scan, capacity, 1), grid_(device), keys_(device, "view tree", "keys of views", capacity),
       order_(device, "view tree", "order of views", capacity), levels_(device, "view tree", "levels of views", 2 * (view_tree_levels + 1)),
-      nodes_(device, "view tree", "nodes of views", capacity + inner_nodes(capacity)), groups_(device, "view tree", "groups of views", inner_nodes(capacity)),
+      nodes_(device, "view tree", "nodes of views", node_count(capacity)), groups_(device, "view tree", "groups of views", inner_nodes(capacity)),
       boxes_(device, "view tree", "boxes of views", inner_nodes(capacity)) {
     assert(capacity > 0 && capacity <= most_views);
 }

@@ -19,6 +19,7 @@ public:
     void record(engine::Recorder& recorder, const engine::Array<View>& views, const engine::Array<uint>& count, vec3 low, vec3 high);
 
     uint32_t capacity() const { return capacity_; }
+    static uint32_t node_count(uint32_t capacity);  // room that nodes() of so many views have
     // There are at most so many: each has two children or more that are inner nodes, or none.
     uint32_t inner_capacity() const { return uint32_t(groups_.count()); }
     // By place along the curve: which of the views that were given.

@@ -19,6 +19,12 @@ engine::Program program(engine::Device& device, GatherVisibility visibility, eng
 
 }  // namespace
 
+uint32_t gather_block(uint32_t lights, uint32_t subset) {
+    uint32_t block = 1;
+    while (subset > 0 && block < 16 && uint64_t(subset) * block * block < lights) block *= 2;
+    return block;
+}
+
 GatherPass::GatherPass(engine::Device& device, GatherVisibility visibility, uint32_t width, uint32_t height,
                        const engine::Constants& variant, bool glossy, bool far, bool listed)
     : device_(device), visibility_(visibility), program_(program(device, visibility, variant, glossy, far, listed)),

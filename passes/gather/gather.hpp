@@ -13,6 +13,10 @@ namespace myriad::passes {
 
 enum class GatherVisibility { none, maps, rays };
 
+// Pixels in a block's side so that each gathers about `subset` of the lights, 0: all. A power of two: interleaved sets of that many are fair samples of the
+// VPL sequence (passes/vpl).
+uint32_t gather_block(uint32_t lights, uint32_t subset);
+
 // The VPLs, and how to sum them up.
 struct GatherInputs {
     const GBuffer& gbuffer;

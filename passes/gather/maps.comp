@@ -2,20 +2,11 @@
 #extension GL_GOOGLE_include_directive : require
 // Gathers with visibility from the atlas, or with none (specialisation constant 2). One invocation a pixel.
 #include "engine/kernel.glsl"
-#include "passes/gather/gather_io.h"
+#include "passes/gather/seen.glsl"
 layout(constant_id = 2) const bool use_maps = true;
 layout(constant_id = glossy_constant) const bool glossy = false;
 layout(constant_id = gather_listed_constant) const bool listed = false;
 layout(push_constant, scalar) uniform Push { GatherPush push; };
-
-float seen_in_texel(MapQuery q, int right, int below, uint map) {
-    const MapTexel t = map_texel(q, right, below, push.map_size);
-    return map_seen(uintBitsToFloat(push.atlas.at[map + t.index]), t);
-}
-float seen_in_map(vec3 x, vec3 n_g, vec3 vpl_position, uint map) {
-    const MapQuery q = map_query(x, n_g, vpl_position, push.map_size, push.bias);
-    return map_blend(q, vec4(seen_in_texel(q, 0, 0, map), seen_in_texel(q, 1, 0, map), seen_in_texel(q, 0, 1, map), seen_in_texel(q, 1, 1, map)));
-}
 
 float seen_in_parallel_texel(ParallelQuery q, int right, int below, uint map) {
     const MapTexel t = parallel_map_texel(q, right, below);
@@ -77,7 +68,7 @@ void main() {
             const uint map = (i - push.first_map) * map_texels(push.map_size);
             float seen = 1.0f;
             if (use_maps && parallel_views) seen = seen_in_parallel_map(x, n_g, push.views.at[i], map);
-            else if (use_maps) seen = seen_in_map(x, n_g, vpl.position, map);
+            else if (use_maps) seen = seen_in_map(x, n_g, vpl.position, push.atlas, map, push.map_size, push.bias);
             sum += vpl.flux * (t.diffuse * seen * scale);
             if (glossy) mirrored += vpl.flux * (t.glossy * seen * scale) * brdf_fresnel(lobe.f0, t.power);
         }

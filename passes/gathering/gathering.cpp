@@ -10,33 +10,48 @@ namespace myriad::passes {
 
 namespace {
 
-// Pixels in a block's side so that each gathers about `subset` of the lights. A power of two: interleaved sets of that many are fair
-// samples of the VPL sequence (passes/vpl).
-uint32_t block_for(uint32_t lights, uint32_t subset) {
-    uint32_t block = 1;
-    while (subset > 0 && block < 16 && uint64_t(subset) * block * block < lights) block *= 2;
-    return block;
-}
-
 static_assert(compute::ViewTree::most_views <= 1u << gather_listed_bits, "a place has room in a listed light");
 
 bool own_order(const GatheringSettings& settings) {
     return settings.visibility == GatherVisibility::maps && settings.maps.method == MapMethod::megaviews;
 }
 
+// Where there are no more lights than a pixel may gather, it gathers them all.
+bool picks(const GatheringSettings& s) { return s.method != GatherMethod::subset && !s.far && s.subset < s.lights; }
+
+GatheringSettings checked(GatheringSettings s) {
+    if (s.method != GatherMethod::subset && !picks(s)) s.method = GatherMethod::subset, s.subset = 0;
+    s.maps.parallel = s.far;
+    if (s.method == GatherMethod::subset) return s;
+    if (s.lights > compute::ViewTree::most_views)
+        throw InputError("a gather that picks from a tree takes up to " + std::to_string(compute::ViewTree::most_views) + " VPLs, and " +
+                         std::to_string(s.lights) + " are asked for; lower --vpls");
+    if (s.visibility == GatherVisibility::maps && s.maps.update != CutUpdate::basic)
+        throw InputError("--gather culled and tree take VPLs in the order of a curve, which changes from frame to frame; --update incremental and lazy need the same VPLs in the "
+                         "same places: give --update basic");
+    return s;
+}
+
 }  // namespace
 
 Gathering::Gathering(engine::Device& device, const GatheringSettings& settings, const engine::Constants& variant, const compute::WorldTriangles* world,
                      const IsmScene* ism)
-    : settings_(settings), block_(block_for(settings.lights, settings.subset)),
-      gather_(device, settings.visibility, settings.width, settings.height, variant, settings.glossy, settings.far, own_order(settings)) {
-    settings_.maps.parallel = settings.far;
-    if (settings.filter && block_ > 1) filter_.emplace(device, settings.width, settings.height, settings.glossy);
-    if (settings.visibility == GatherVisibility::maps) maps_.emplace(device, settings_.maps, settings.lights, block_ * block_, world, ism);
-    if (own_order(settings))
-        reordering_.emplace(engine::Program(device, engine::passes_kernels, "gathering/reorder"), compute::Sort(device, settings.lights, 32),
-                            engine::Array<Vpl>(device, "vpls", "lights in the order of maps", settings.lights),
-                            engine::Array<uint>(device, "vpls", "sets of lights", settings.lights), engine::Array<uint>(device, "vpls", "lights by set", settings.lights));
+    : settings_(checked(settings)), block_(picks(settings_) ? pick_block : gather_block(settings_.lights, settings_.subset)) {
+    const GatheringSettings& s = settings_;
+    const bool maps = s.visibility == GatherVisibility::maps, reorders = own_order(s) && !picks(s);
+    if (picks(s))
+        pick_.emplace(device,
+                      PickSettings{.method = s.method == GatherMethod::culled ? PickMethod::culled : PickMethod::tree, .visibility = s.visibility, .width = s.width,
+                                   .height = s.height, .vpls = s.lights, .picks = s.subset, .block = block_, .seed = s.seed, .glossy = s.glossy, .reach = s.distance},
+                      variant);
+    else gather_.emplace(device, s.visibility, s.width, s.height, variant, s.glossy, s.far, reorders);
+    if (picks(s) && !own_order(s)) views_.emplace(device, s.lights);
+    if (s.filter && block_ > 1) filter_.emplace(device, s.width, s.height, s.glossy);
+    if (maps) maps_.emplace(device, s.maps, s.lights, picks(s) ? 1 : block_ * block_, world, ism);
+    if (reorders)
+        reordering_.emplace(engine::Program(device, engine::passes_kernels, "gathering/reorder"), compute::Sort(device, s.lights, 32),
+                            engine::Array<Vpl>(device, "vpls", "lights in the order of maps", s.lights),
+                            engine::Array<uint>(device, "vpls", "sets of lights", s.lights), engine::Array<uint>(device, "vpls", "lights by set", s.lights));
 }
 
 // Null where the maps' order is the lights'.
@@ -54,28 +69,61 @@ const engine::Array<uint>* Gathering::reorder(engine::Recorder& recorder, const 
 
 void Gathering::record(engine::Recorder& recorder, const GatheringInputs& in, float pixel_angle, const engine::Array<uint>& exhausted,
                        const std::function<void(double)>& report) {
+    if (pick_) {
+        record_picked(recorder, in, exhausted, report);
+        return filter(recorder, in, pixel_angle);
+    }
     const GatherInputs given{in.gbuffer, in.lights, in.count, block_, in.bound, settings_.far ? &in.views : nullptr};
     const GatherInputs reordered{in.gbuffer, reordering_ ? reordering_->lights : in.lights, in.count, block_, in.bound, nullptr, maps_ ? reorder(recorder, in) : nullptr};
     const GatherInputs& gather = reordering_ ? reordered : given;
-    gather_.clear(recorder);
+    gather_->clear(recorder);
     for (uint32_t first = 0; first < settings_.lights;) {
-        const uint32_t batch = maps_ ? maps_->batch() : gather_.max_vpls(block_);
+        const uint32_t batch = maps_ ? maps_->batch() : gather_->max_vpls(block_);
         if (maps_) maps_->record(recorder, in.scene, in.views, in.count, first);
         {
             auto scope = recorder.scope("gather");
             if (settings_.visibility == GatherVisibility::rays)
-                gather_.record_rays(recorder, gather, first, batch, in.bvh, in.reach, exhausted);
+                gather_->record_rays(recorder, gather, first, batch, in.bvh, in.reach, exhausted);
             else
-                gather_.record_maps(recorder, gather, first, batch, maps_ ? &maps_->atlas() : nullptr, settings_.maps.map_size, settings_.bias,
+                gather_->record_maps(recorder, gather, first, batch, maps_ ? &maps_->atlas() : nullptr, settings_.maps.map_size, settings_.bias,
                                     maps_ ? maps_->lists() : nullptr);
         }
         recorder.submit_and_wait();  // a batch a submission: progress, and no time-out on devices that watch
         if (!maps_ || maps_->accept()) first += batch;  // else the same again, with longer lists or fewer views
         report(std::min(1.0, double(first) / settings_.lights));
     }
+    filter(recorder, in, pixel_angle);
+}
+
+void Gathering::filter(engine::Recorder& recorder, const GatheringInputs& in, float pixel_angle) {
     if (!filter_) return;
     auto scope = recorder.scope("filter");
-    filter_->record(recorder, in.gbuffer, gather_.irradiance(), block_, pixel_angle);
+    filter_->record(recorder, in.gbuffer, gathered(), block_, pixel_angle);
+}
+
+// Maps are drawn in the order of the tree, so that picks, in that order too, are gathered batch by batch.
+void Gathering::record_picked(engine::Recorder& recorder, const GatheringInputs& in, const engine::Array<uint>& exhausted,
+                              const std::function<void(double)>& report) {
+    if (maps_) maps_->begin(recorder, in.scene, in.views, in.count);
+    if (views_) {
+        auto scope = recorder.scope("light tree");
+        views_->record(recorder, in.views, in.count, in.scene.low, in.scene.high);
+    }
+    const compute::ViewTree& views = views_ ? *views_ : maps_->shared()->tree();
+    pick_->record_picks(recorder, in.gbuffer, views, in.lights, in.count, in.bound);
+    pick_->clear(recorder);
+    for (uint32_t first = 0; first < settings_.lights;) {
+        const uint32_t batch = maps_ ? maps_->batch() : settings_.lights;
+        if (maps_) maps_->record(recorder, in.scene, views.nodes(), in.count, first);
+        {
+            auto scope = recorder.scope("gather");
+            if (settings_.visibility == GatherVisibility::rays) pick_->record_rays(recorder, in.gbuffer, in.bvh, in.reach, exhausted);
+            else pick_->record_maps(recorder, in.gbuffer, first, batch, maps_ ? &maps_->atlas() : nullptr, settings_.maps.map_size, settings_.bias, maps_ ? maps_->lists() : nullptr);
+        }
+        recorder.submit_and_wait();
+        if (!maps_ || maps_->accept()) first += batch;
+        report(std::min(1.0, double(first) / settings_.lights));
+    }
 }
 
 }  // namespace myriad::passes

@@ -8,14 +8,25 @@
 #include "passes/filter/filter.hpp"
 #include "passes/gather/gather.hpp"
 #include "passes/maps/maps.hpp"
+#include "passes/pick/pick.hpp"
 
 namespace myriad::passes {
+
+// Which of the lights a pixel gathers.
+enum class GatherMethod {
+    subset,  // a set of them, another one for each pixel of a block (passes/gather)
+    culled,  // some of those that may light its tile at all (passes/pick)
+    tree,    // some, by what they may bring
+};
 
 struct GatheringSettings {
     GatherVisibility visibility = GatherVisibility::maps;
     uint32_t width = 0, height = 0;
     uint32_t lights = 0;      // there are at most so many
-    uint32_t subset = 0;      // that each pixel gathers, about; 0: all
+    GatherMethod method = GatherMethod::subset;
+    uint32_t subset = 0;      // that each pixel gathers, about; 0, or as many as there are: all
+    float distance = std::numeric_limits<float>::infinity();  // culled: metres that light reaches
+    uint32_t seed = 1;        // culled, tree
     bool filter = true;       // blocks of pixels that gather subsets
     bool glossy = false;      // the G-buffer has gloss
     bool far = false;         // lights are far_light()s, their views parallel
@@ -51,15 +62,21 @@ public:
 
     uint32_t block() const { return block_; }  // sets of lights are block x block
     // As GatherPass::irradiance().
-    const engine::Array<vec4>& irradiance() const { return filter_ ? filter_->filtered() : gather_.irradiance(); }
+    const engine::Array<vec4>& irradiance() const { return filter_ ? filter_->filtered() : gathered(); }
+    const engine::Array<vec4>& gathered() const { return pick_ ? pick_->irradiance() : gather_->irradiance(); }  // before the filter
     std::optional<MapCounters> take_counters() { return maps_ ? std::optional(maps_->take_counters()) : std::nullopt; }
 
 private:
     const engine::Array<uint>* reorder(engine::Recorder& recorder, const GatheringInputs& in);
 
+    void filter(engine::Recorder& recorder, const GatheringInputs& in, float pixel_angle);
+    void record_picked(engine::Recorder& recorder, const GatheringInputs& in, const engine::Array<uint>& exhausted, const std::function<void(double)>& report);
+
     GatheringSettings settings_;
     uint32_t block_;
-    GatherPass gather_;
+    std::optional<GatherPass> gather_;
+    std::optional<PickPass> pick_;             // in its place
+    std::optional<compute::ViewTree> views_;   // that it picks from, where maps have none
     std::optional<FilterPass> filter_;
     std::optional<ViewMaps> maps_;
     // Where maps take views in an order of their own, lights go along, and are listed by the sets that they were in.

@@ -94,6 +94,7 @@ public:
     // done again; a gather that was given lists() has left it out. Throws OutOfMemory when there is no way left.
     bool accept();
 
+    const SharedMaps* shared() const { return shared_ ? &*shared_ : nullptr; }  // megaviews
     const engine::Array<uint>& atlas() const { return atlas_; }
     const compute::AppendLists* lists() const { return lists_ ? &*lists_ : carried_now_ ? &carried_now_->lists() : nullptr; }  // null: the method has none, nothing overflows
     // For a tree that was built anew: cuts of the old one are forgotten.

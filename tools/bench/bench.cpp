@@ -44,6 +44,8 @@ const std::vector<Bench>& benches() {
         {"manylods-arity", "trees of arity 2, 4 and 8: what they take, to refit and to be cut, from the roots and from the frame before", bench_arity},
         {"megaviews-views", "maps of up to a million views: drawn for many at once, against ManyLoDs and all triangles", bench_megaviews,
          {"--csv", "--plot", "--arity", "--distributions", "--measured"}, 16, 2.0f},
+        {"gather", "what pixels gather of many VPLs: all, subsets, some that are not culled, and what a light tree picks, with their errors", bench_gather,
+         {"--arity", "--bounces", "--picks"}},
         {"sort", "radix sorts of keys with payload: the device's, in several shapes, against the host's", bench_sort, {"--items"}},
         {"octree", "a sparse octree over points of a scene's surface, built on the device and on the host", bench_octree, {"--depth"}},
         {"stability", "a scene scaled, far from the origin, and on a floor that is much larger: where images suffer", bench_stability, {"--arity"}},
@@ -120,6 +122,8 @@ void add_bench(CLI::App& app) {
     bench->add_option("--animation", o.animation, "manylods-fig8: the clip that plays, by name or index (the first)");
     bench->add_option("--frames", o.frames, "manylods-fig8: of the clip, 1/24 s each (48)")->check(CLI::Range(1u, 100000u));
     bench->add_option("--items", o.items, "sort: numbers of keys, separated by commas (65536,1048576,4194304)")->delimiter(',')->check(CLI::Range(1u, 1u << 26));
+    bench->add_option("--bounces", o.bounces, "gather: reflections of light before what is seen (1)")->check(CLI::Range(0u, 64u));
+    bench->add_option("--picks", o.picks, "gather: VPLs that a pixel gathers, separated by commas (4,16,64,256,1024)")->delimiter(',')->check(CLI::Range(1u, 4096u));
     bench->add_option("--depth", o.depth, "octree: levels below the root (10)")->check(CLI::Range(0u, 21u));
     bench->add_option("--csv", o.csv, "manylods-fig8: write a line for each frame; megaviews-views: for each row");
     bench->add_option("--distributions", o.distributions, "megaviews-views: of views, separated by commas: 1-bounce, 4-bounce, random (all)")

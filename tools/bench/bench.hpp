@@ -52,6 +52,8 @@ struct BenchOptions {
     uint32_t frames = 48;
     std::vector<uint32_t> items;    // empty: the experiment's own
     uint32_t depth = 10;            // of an octree
+    uint32_t bounces = 1;           // of light
+    std::vector<uint32_t> picks;    // VPLs that a pixel gathers; empty: the experiment's own
     std::vector<std::string> distributions;  // of views; empty: all that the experiment has
     uint32_t measured = 65536;      // views: beyond that what draws each view for itself is extrapolated
     std::string csv, plot, images;  // empty: not written
@@ -84,6 +86,8 @@ void bench_arity(engine::Device& device, const BenchOptions& options, const RowS
 void bench_equal_time(engine::Device& device, const BenchOptions& options, const RowSink& sink);
 // bench/megaviews.cpp
 void bench_megaviews(engine::Device& device, const BenchOptions& options, const RowSink& sink);
+// bench/gather.cpp
+void bench_gather(engine::Device& device, const BenchOptions& options, const RowSink& sink);
 // bench/octree.cpp
 void bench_octree(engine::Device& device, const BenchOptions& options, const RowSink& sink);
 // bench/sort.cpp
