@@ -29,7 +29,12 @@ PickPass::PickPass(engine::Device& device, const PickSettings& s, const engine::
       irradiance_(device, "images", "irradiance", uint64_t(s.width) * s.height * (s.glossy ? 2 : 1)) {
     assert(s.picks >= 1 && s.picks <= pick_most && s.side % s.block == 0 && s.side <= 255);
     pick_.emplace(device, passes_kernels, s.method == PickMethod::tree ? "pick/tree" : "pick/culled");
-    if (s.method == PickMethod::tree) return;
+    if (s.method == PickMethod::tree) {
+        weigh_.emplace(device, passes_kernels, "pick/weigh");
+        sum_.emplace(device, passes_kernels, "pick/sum");
+        weights_ = {device, "picks", "weights of nodes", uint64_t(tile_count_) * pick_weights(pick_sets(s.block), s.picks)};
+        return;
+    }
     remain_kernel_.emplace(device, passes_kernels, "pick/remain");
     remain_ = {device, "picks", "VPLs that remain", uint64_t(tile_count_) * parts_};
 }
@@ -44,11 +49,17 @@ void PickPass::record_picks(engine::Recorder& recorder, const GBuffer& gbuffer, 
     auto scope = recorder.scope("picks");
     recorder.dispatch(tiles_kernel_, PickTilesPush{.gbuffer = gbuffer.read(recorder), .tiles = recorder.write(tiles_), .side = settings_.side}, tile_count_);
     if (settings_.method == PickMethod::tree) {
+        const uint32_t limit = pick_weights(pick_sets(settings_.block), settings_.picks);
+        for (const engine::Program* kernel : {&*weigh_, &*sum_})
+            recorder.dispatch(*kernel,
+                              PickWeighPush{.tiles = recorder.read(tiles_), .nodes = recorder.read(tree_.nodes()), .levels = views.read_levels(recorder),
+                                            .weights = recorder.write(weights_), .tile_count = tile_count_, .capacity = tree_.capacity(), .limit = limit, .bound = bound_},
+                              kernel == &*weigh_ ? (tile_count_ + kernel->workgroup_size() - 1) / kernel->workgroup_size() * uint64_t(limit) * kernel->workgroup_size() : tile_count_);
         const uint32_t parts = (pick_sets(settings_.block) * settings_.picks + pick_a_walk - 1) / pick_a_walk;
         recorder.dispatch(*pick_,
                           PickTreePush{.tiles = recorder.read(tiles_), .nodes = recorder.read(tree_.nodes()), .count = recorder.read(count),
-                                       .picks = recorder.write(picks_), .shape = shape(), .tile_count = tile_count_, .parts = parts,
-                                       .capacity = tree_.capacity(), .bound = bound_},
+                                       .picks = recorder.write(picks_), .weights = recorder.read(weights_), .shape = shape(), .tile_count = tile_count_, .parts = parts,
+                                       .capacity = tree_.capacity(), .limit = limit, .bound = bound_},
                           uint64_t(tile_count_) * parts);
         return;
     }

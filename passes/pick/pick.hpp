@@ -61,9 +61,10 @@ private:
     uint32_t tile_count_, part_, parts_;  // culled: VPLs that an invocation looks at, and how many invocations a tile has
     LightTree tree_;
     engine::Program tiles_kernel_, gather_;
-    std::optional<engine::Program> remain_kernel_, pick_;
+    std::optional<engine::Program> weigh_, sum_, remain_kernel_, pick_;
     engine::Array<PickTile> tiles_;
     engine::Array<Pick> picks_;
+    engine::Array<float> weights_;
     engine::Array<uint> remain_;
     engine::Array<vec4> irradiance_;
 };

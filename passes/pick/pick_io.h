@@ -97,7 +97,7 @@ MYRIAD_FN float pick_importance(PickTile tile, LightNode node, float bound) {
     // That of the centres, measured: by the nearest, nodes that reach around the tile would have most picks, ten times the error.
     const float typical = max(b.distance, 0.5f * (tile.radius + node.radius));
     const float g = min(cosines / max(typical * typical, 1e-30f), bound);
-    return max(node.flux * min(g, 1e7f), 1e-37f);
+    return clamp(node.flux * min(g, 1e7f), 1e-37f, 1e30f);
 }
 
 // Pixels of a tile are in as many sets as there are in a block, as in passes/gather.
@@ -123,10 +123,19 @@ MYRIAD_FN uint pick_even(uint number, uint total, uint remain, uint tile, uint s
     return min(number * whole + part / total + uint(in_part), remain - 1u);
 }
 const uint pick_most = 4096u;         // a pixel
-const uint pick_a_walk = 16u;         // picks that an invocation looks for
+const uint pick_a_walk = 64u;         // picks that an invocation looks for
 // VPLs that an invocation culls, at least and at most, and in how many parts they are for each tile, about.
 const uint pick_part_least = 64u, pick_part_most = 4096u, pick_parts = 64u;
 MYRIAD_FN uint pick_part(uint vpls) { return clamp((vpls + pick_parts - 1u) / pick_parts, pick_part_least, pick_part_most); }
+
+// Of a tree's inner nodes, level by level from the root, the first ones have their importance from below: the sum of their children's, in place of an estimate
+// for all that is below in one, which knows little of lights that face all ways. So many of each tile, as many as it makes picks, about.
+const uint pick_weights_least = 64u, pick_weights_most = 1024u;
+MYRIAD_FN uint pick_weights(uint sets, uint picks) { return clamp(sets * picks, pick_weights_least, pick_weights_most); }
+// Whether all children of a node have theirs: then its own is the sum of these.
+MYRIAD_FN bool pick_summed(LightNode node, uint capacity, uint weights) {
+    return light_first_child(node) >= capacity && light_first_child(node) + light_child_count(node) - capacity <= weights;
+}
 
 struct PickShape {
     uint side;              // pixels of a tile, a multiple of `block`
@@ -143,14 +152,25 @@ struct PickTilesPush {
     uint side;
 };
 
+// "pick/weigh": a workgroup a node, for as many tiles, `limit` of them before the next tiles. "pick/sum": an invocation a tile.
+struct PickWeighPush {
+    PickTiles tiles;
+    LightNodes nodes;
+    ViewLevels levels;
+    Floats weights;         // by tile and inner node, the first `limit` of them
+    uint tile_count, capacity, limit;
+    float bound;
+};
+
 // "pick/tree": `parts` invocations a tile, each for pick_a_walk numbers.
 struct PickTreePush {
     PickTiles tiles;
     LightNodes nodes;
     Uints count;            // of VPLs
     Picks picks;
+    Floats weights;         // as PickWeighPush
     PickShape shape;
-    uint tile_count, parts, capacity;
+    uint tile_count, parts, capacity, limit;
     float bound;
 };
 

@@ -21,16 +21,27 @@ std::vector<PickTile> pick_tiles_ref(const HostGBuffer& g, uint side) {
     return tiles;
 }
 
-PickChances pick_tree_ref(const HostLightTree& tree, const PickTile& tile, float bound) {
+PickChances pick_tree_ref(const HostLightTree& tree, const PickTile& tile, float bound, uint weights) {
     PickChances chances{std::vector<double>(tree.lights.size(), 0)};
+    // Of inner nodes that are weighed from below, what their children may bring, who may be such nodes only where they all are.
+    const std::function<double(uint)> importance = [&](uint number) {
+        const auto estimate = [&](uint n) { return double(pick_importance(tile, tree.nodes[n], bound)); };
+        if (tree.views.is_view(number) || number - tree.views.capacity >= weights) return estimate(number);
+        const ViewGroup& group = tree.views.group(number);
+        const uint end = group.first_child + group.children;
+        const bool summed = !tree.views.is_view(group.first_child) && end - tree.views.capacity <= weights;
+        double sum = 0;
+        for (uint child = group.first_child; child < end; ++child) sum += summed ? importance(child) : estimate(child);
+        return sum;
+    };
     const std::function<void(uint, double)> walk = [&](uint number, double probability) {
         if (tree.views.is_view(number)) return void(chances.vpl[number] = probability);
         const ViewGroup& group = tree.views.group(number);
+        std::vector<double> each;
         double sum = 0;
-        for (uint i = 0; i < group.children; ++i) sum += double(pick_importance(tile, tree.nodes[group.first_child + i], bound));
+        for (uint i = 0; i < group.children; ++i) each.push_back(importance(group.first_child + i)), sum += each.back();
         if (sum == 0) return void(chances.none += probability);
-        for (uint i = 0; i < group.children; ++i)
-            walk(group.first_child + i, probability * double(pick_importance(tile, tree.nodes[group.first_child + i], bound)) / sum);
+        for (uint i = 0; i < group.children; ++i) walk(group.first_child + i, probability * each[i] / sum);
     };
     if (!chances.vpl.empty() && tile.radius >= 0) walk(tree.views.capacity, 1);
     else chances.none = 1;

@@ -17,7 +17,7 @@ struct PickChances {
     std::vector<double> vpl;
     double none = 0;
 };
-PickChances pick_tree_ref(const HostLightTree& tree, const PickTile& tile, float bound);
+PickChances pick_tree_ref(const HostLightTree& tree, const PickTile& tile, float bound, uint weights);
 PickChances pick_culled_ref(const HostLightTree& tree, const PickTile& tile, float reach);
 
 }  // namespace myriad::passes

@@ -114,7 +114,7 @@ protected:
     std::vector<PickChances> probabilities(const Outcome& o, const PickSettings& s, float bound) {
         std::vector<PickChances> p;
         for (const PickTile& tile : o.tiles)
-            p.push_back(s.method == PickMethod::tree ? pick_tree_ref(o.tree, tile, bound) : pick_culled_ref(o.tree, tile, s.reach));
+            p.push_back(s.method == PickMethod::tree ? pick_tree_ref(o.tree, tile, bound, pick_weights(s.block * s.block, s.picks)) : pick_culled_ref(o.tree, tile, s.reach));
         return p;
     }
     // What pixels get of these picks: the gather's own twin, a pixel at a time, with fluxes as picks count them.

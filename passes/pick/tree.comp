@@ -33,7 +33,9 @@ void main() {
         float importance[view_tree_most];
         float sum = 0.0f;
         for (uint i = 0u; i < children; ++i) {
-            importance[i] = pick_importance(tile, push.nodes.at[first_child + i], push.bound);
+            const uint child = first_child + i;
+            if (child >= push.capacity && child - push.capacity < push.limit) importance[i] = push.weights.at[tile_index * push.limit + child - push.capacity];
+            else importance[i] = pick_importance(tile, push.nodes.at[child], push.bound);
             sum += importance[i];
         }
         if (sum > 0.0f) {
