@@ -4,7 +4,7 @@
 // the tile's receivers, by one throw of dice a node. So each VPL has count * p of them in the mean, p the product of shares on its way, a node that may
 // bring much has many, evenly spread, and none in a row of numbers is further from its share than one a level (hierarchical sample warping, Clarberg et
 // al. 2005; light trees: Estevez and Kulla 2018; one cut for a block of pixels: Yuksel 2019). Every invocation follows the nodes that hold its own
-// pick_a_walk numbers: what it has put off holds at least one of them each, so the stack is that high.
+// pick_a_walk numbers: what it has put off holds at least one of them each, so the stack is that high. Nodes near the root have weights from below (pick/weigh).
 #include "engine/kernel.glsl"
 #include "passes/pick/pick_io.h"
 layout(push_constant, scalar) uniform Push { PickTreePush push; };
