@@ -6,6 +6,7 @@
 
 #include "compute/bsh/bsh_build.h"
 #include "compute/bsh/bsh_io.h"
+#include "compute/bsh/scene_tree.hpp"
 #include "compute/instances/world.hpp"
 #include "engine/recorder.hpp"
 
@@ -44,7 +45,7 @@ struct BshQuality {
     double extent = 0;   // the sum of squares of inner nodes' radii, m^2: large nodes count most, so it grows before cuts do
 };
 
-class Bsh {
+class Bsh : public SceneTree {
 public:
     // Bounds come with refit. Without samples the hierarchy is empty(): it has no leaves and must not be read.
     // Throws InputError as check_bsh_size.
@@ -76,21 +77,21 @@ public:
     uint rebuilds() const { return rebuilds_; }                                 // how often that was
 
     // For a kernel that walks the tree.
-    BshRef read(engine::Recorder& recorder) const;
+    BshRef read(engine::Recorder& recorder) const override;
 
     // Goes up with each refit: who keeps something made of the bounds compares.
     uint64_t bounds_version() const { return bounds_version_; }
     uint64_t all_bounds_version() const { return all_bounds_version_; }         // of the last that was of all blocks
 
-    bool empty() const { return levels_.empty(); }
+    bool empty() const override { return levels_.empty(); }
     uint leaves() const { return empty() ? 0 : levels_.front().nodes; }
     uint blocks() const { return empty() ? 0 : levels_.back().first_block(); }  // without the one over the root
     uint slots() const { return empty() ? 0 : arity() * (blocks() + 1); }
     uint root() const { return shape().root(); }                                // its slot
-    uint arity() const { return 1u << arity_log2_; }
+    uint arity() const override { return 1u << arity_log2_; }
     BshShape shape() const { return {leaves(), blocks(), arity_log2_}; }
     uint depth() const { return depth_; }                                       // of the binary tree: leaves = 2^depth
-    uint levels() const { return empty() ? 0 : uint(levels_.size()) - 1; }      // opening steps from the root to the leaves
+    uint levels() const override { return empty() ? 0 : uint(levels_.size()) - 1; }      // opening steps from the root to the leaves
     float sample_radius() const { return sample_radius_; }
     float sample_share() const { return empty() ? 0 : float(area_ / leaves()); }  // m^2
     double area() const { return area_; }

@@ -75,16 +75,17 @@ MYRIAD_FN float bsh_reach(vec3 c, Sphere s) {
 
 // The frame of a block: the least corner of its children's centres, and the least power of two as the step that spans
 // them. With a power of two, decoding is the same with and without fused multiply-add, on every device.
-MYRIAD_FN vec4 bsh_frame(BshSpheres children) {
+MYRIAD_FN vec4 bsh_frame(BshSpheres children, uint count) {
     vec3 low = children.at[0].center;
     vec3 high = low;
-    for (uint i = 1u; i < bsh_looked_at; ++i) {
+    for (uint i = 1u; i < count; ++i) {
         low = min(low, children.at[i].center);
         high = max(high, children.at[i].center);
     }
     const float extent = max(max(high.x - low.x, high.y - low.y), high.z - low.z) / 65535.0f;
     return vec4(low, uintBitsToFloat((floatBitsToUint(extent) + 0x7fffffu) & 0x7f800000u));
 }
+MYRIAD_FN vec4 bsh_frame(BshSpheres children) { return bsh_frame(children, bsh_looked_at); }
 
 MYRIAD_FN uint bsh_quantise(float v, float origin, float step) {
     return step > 0.0f ? uint(clamp(floor((v - origin) / step + 0.5f), 0.0f, 65535.0f)) : 0u;
@@ -211,11 +212,11 @@ MYRIAD_FN uint bsh_cone_of(vec3 e, vec3 f) {
 }
 
 // The cone around them. Each axis is flipped into the hemisphere of the first; the owner's is between their extremes.
-MYRIAD_FN uint bsh_cone_merge(BshCones children) {
+MYRIAD_FN uint bsh_cone_merge(BshCones children, uint count) {
     const vec3 first = bsh_cone_axis(children.at[0]);
     vec3 low = first;
     vec3 high = first;
-    for (uint i = 1u; i < bsh_looked_at; ++i) {
+    for (uint i = 1u; i < count; ++i) {
         vec3 a = bsh_cone_axis(children.at[i]);
         if (a.x * first.x + a.y * first.y + a.z * first.z < 0.0f) a = -a;
         low = min(low, a);
@@ -227,7 +228,7 @@ MYRIAD_FN uint bsh_cone_merge(BshCones children) {
     const vec3 to = bsh_cone_axis(axis);
     float least_cos = 1.0f;
     uint least_code = 0u;
-    for (uint i = 0u; i < bsh_looked_at; ++i) {
+    for (uint i = 0u; i < count; ++i) {
         const uint cone = children.at[i];
         // A cone around the very axis adds its angle as it is: flat surfaces stay as flat as their triangles.
         if ((cone & 0xffffffu) == axis) {
@@ -244,6 +245,7 @@ MYRIAD_FN uint bsh_cone_merge(BshCones children) {
     const uint code = least_cos < 1.0f ? bsh_cone_code(axis, least_cos) >> 24 : 0u;
     return axis | (max(code, least_code) << 24);
 }
+MYRIAD_FN uint bsh_cone_merge(BshCones children) { return bsh_cone_merge(children, bsh_looked_at); }
 MYRIAD_END
 
 #endif

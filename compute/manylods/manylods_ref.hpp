@@ -9,14 +9,22 @@
 
 namespace myriad::compute {
 
-// The tree's arrays, as read back from the device.
+// The tree's arrays, as read back from the device, by block and by slot.
 struct HostTree : BshShape {
     std::vector<vec4> frames;
     std::vector<uvec2> spheres;
     std::vector<uint> cones;
+    // Of an octree, which has no arithmetic for them; its root is in slot 0, and `leaves` are slots that may hold one.
+    std::vector<uint> heights;       // of a block's children
+    std::vector<uint> child_blocks;  // by slot
 
     HostTree() = default;
     HostTree(engine::Device& device, const Bsh& tree);
+    bool is_octree() const { return !heights.empty(); }
+    uint root() const { return is_octree() ? 0 : BshShape::root(); }
+    uint height(uint slot) const { return is_octree() ? heights[slot >> arity_log2] : bsh_height(slot, *this); }
+    bool is_leaf(uint slot) const { return is_octree() ? height(slot) == 0 : bsh_is_leaf(slot, leaves); }
+    uint block_of(uint slot) const { return is_octree() ? child_blocks[slot] : bsh_block_of(slot, *this); }
     Sphere sphere(uint slot) const { return bsh_decode(frames[slot >> arity_log2], spheres[slot]); }
     bool absent(uint slot) const { return bsh_is_absent(spheres[slot]); }
 };

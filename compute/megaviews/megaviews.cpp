@@ -21,7 +21,7 @@ MegaViews::MegaViews(engine::Device& device, const engine::Constants& constants)
       counts_report_(device, "lists", "counts of pairs report", most_steps * step_words, engine::Location::host), one_(device, "lists", "one", 1) {}
 
 void MegaViews::record(engine::Recorder& recorder, AppendLists& lists, const MegaViewsInputs& in) {
-    assert(in.tree.arity() == arity_ && in.tree.blocks() < cut_max_blocks && in.views.capacity() + in.views.inner_capacity() <= cut_max_views);
+    assert(in.tree.arity() == arity_ && in.views.capacity() + in.views.inner_capacity() <= cut_max_views);
     recorder.fill(counts_, 0);
     recorder.fill(one_, in.tree.empty() ? 0 : 1);
     uint32_t step = 0;

@@ -11,7 +11,7 @@
 namespace myriad::compute {
 
 struct MegaViewsInputs {
-    const Bsh& tree;
+    const SceneTree& tree;
     const ViewTree& views;
     uint32_t first = 0, limit = 0;  // the views along the curve that maps are made for
     float epsilon = 1;              // texels
@@ -32,7 +32,7 @@ struct PairReport {
 
 class MegaViews {
 public:
-    // `constants`: bsh_constants, for trees of another arity than the default.
+    // `constants`: bsh_constants, for trees of another arity than the default; svo_constant, for octrees.
     explicit MegaViews(engine::Device& device, const engine::Constants& constants = {});
 
     // Rendered pairs, as cut groups in lists.kept() whose views are nodes of in.views.

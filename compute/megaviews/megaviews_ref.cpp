@@ -24,9 +24,9 @@ struct Walk {
         if (tree.absent(slot) || wanted(node) == 0) return;
         ++out.tested;
         const Sphere sphere = tree.sphere(slot);
-        const bool leaf = bsh_is_leaf(slot, tree.leaves);
+        const bool leaf = tree.is_leaf(slot);
         const float radius = views.radius(node);
-        const uint where = classify_pair(views.nodes[node], radius, sphere, leaf, bsh_height(slot, tree), epsilon, map_size);
+        const uint where = classify_pair(views.nodes[node], radius, sphere, leaf, tree.height(slot), epsilon, map_size);
         if (where != pair_open) {
             const bool edge_on = where == pair_drawn && slot != tree.root() && pair_edge_on(views.nodes[node], sphere, tree.cones[slot]);
             out.pairs.push_back({node, slot, where == pair_culled, edge_on});
@@ -35,7 +35,7 @@ struct Walk {
             const ViewGroup& group = views.group(node);
             for (uint child = group.first_child; child < group.first_child + group.children; ++child) visit(slot, child);
         } else {
-            const uint block = bsh_block_of(slot, tree);
+            const uint block = tree.block_of(slot);
             for (uint i = 0; i < tree.arity(); ++i) visit(tree.arity() * block + i, node);
         }
     }
@@ -44,8 +44,8 @@ struct Walk {
 // Leaves below a slot.
 void each_leaf(const HostTree& tree, uint slot, const auto& action) {
     if (tree.absent(slot)) return;
-    if (bsh_is_leaf(slot, tree.leaves)) return action(slot);
-    for (uint i = 0; i < tree.arity(); ++i) each_leaf(tree, tree.arity() * bsh_block_of(slot, tree) + i, action);
+    if (tree.is_leaf(slot)) return action(slot);
+    for (uint i = 0; i < tree.arity(); ++i) each_leaf(tree, tree.arity() * tree.block_of(slot) + i, action);
 }
 
 // Whether any point of the sphere is within the view's frustum, for sure: in doubles, and clear of what floats may have rounded.
@@ -96,7 +96,7 @@ std::string pairs_violation(const HostTree& tree, const HostViewTree& views, uin
     }
     if (!wrong.empty()) return wrong;
     for (uint leaf = 0; leaf < tree.leaves; ++leaf) {
-        if (tree.absent(leaf)) continue;
+        if (tree.absent(leaf) || !tree.is_leaf(leaf)) continue;
         for (uint view = first; view < std::min(end, views.views()); ++view)
             if (const uint n = times[size_t(leaf) * views.views() + view]; n != 1)
                 return "leaf " + std::to_string(leaf) + " and view " + std::to_string(view) + " are below " + std::to_string(n) + " pairs";

@@ -5,6 +5,7 @@
 #include "compute/bsh/tree_testing.hpp"
 #include "compute/manylods/manylods.hpp"
 #include "compute/megaviews/megaviews_ref.hpp"
+#include "compute/svo/svo_ref.hpp"
 
 namespace myriad::compute {
 namespace {
@@ -31,7 +32,22 @@ protected:
         PairReport pairs;
         HostViewTree views;
     };
-    Outcome walk(const Bsh& tree, const std::vector<View>& views, AppendMode mode, float epsilon, uint map_size, uint first = 0, uint limit = ~0u,
+    static engine::Constants constants_of(const SceneTree& tree) { return dynamic_cast<const Svo*>(&tree) ? Svo::constants() : bsh_constants(tree.arity()); }
+    HostTree host_of(const SceneTree& tree) {
+        if (tree.empty()) return {};
+        if (const Svo* svo = dynamic_cast<const Svo*>(&tree)) return svo_host_tree(svo_download(device, *svo));
+        return HostTree(device, dynamic_cast<const Bsh&>(tree));
+    }
+    Svo build_svo(const Soup& soup, uint depth) {
+        vec3 low(0), high(0);
+        if (!soup.positions.empty()) low = high = soup.positions[0];
+        for (const vec3& p : soup.positions) low = min(low, p), high = max(high, p);
+        Svo svo(device, {soup.positions, soup.triangles}, depth, low, high);
+        engine::Recorder recorder(device);
+        svo.build(recorder, on_device(std::vector<vec3>(soup.positions)), on_device(std::vector<uvec4>(soup.triangles)));
+        return svo;
+    }
+    Outcome walk(const SceneTree& tree, const std::vector<View>& views, AppendMode mode, float epsilon, uint map_size, uint first = 0, uint limit = ~0u,
                  uint64_t capacity = 1 << 20) {
         const uint n = uint(views.size());
         ViewTree view_tree(device, std::max(n, 1u));
@@ -39,7 +55,7 @@ protected:
         room.resize(view_tree.capacity());
         const auto on = on_device(room);
         const auto count = on_device(std::vector<uint>{n});
-        MegaViews mega(device, bsh_constants(tree.arity()));
+        MegaViews mega(device, constants_of(tree));
         AppendLists lists(device, mode, capacity, capacity);
         engine::Recorder recorder(device);
         view_tree.record(recorder, on, count, vec3(-1), vec3(1));
@@ -51,8 +67,8 @@ protected:
     }
 
     // The twin's pairs, in both modes; every leaf and view below one pair, and nothing that is seen is culled.
-    void check(const Bsh& tree, const std::vector<View>& views, float epsilon, uint map_size, uint first = 0, uint limit = ~0u, bool brute = true) {
-        const HostTree host = tree.empty() ? HostTree() : HostTree(device, tree);
+    void check(const SceneTree& tree, const std::vector<View>& views, float epsilon, uint map_size, uint first = 0, uint limit = ~0u, bool brute = true) {
+        const HostTree host = host_of(tree);
         std::vector<uvec2> once;
         for (AppendMode mode : {AppendMode::scan, AppendMode::atomic, AppendMode::scan}) {
             const Outcome found = walk(tree, views, mode, epsilon, map_size, first, limit);
@@ -88,6 +104,28 @@ TEST_F(MegaViewsTest, trees_of_every_arity) {
     for (uint arity : {2u, 4u, 8u}) check(build(random_soup(100), 9, arity), random_views(100), 1, 16);
 }
 
+TEST_F(MegaViewsTest, octrees_of_voxels) {
+    for (uint depth : {1u, 2u, 4u}) {
+        const Svo tree = build_svo(random_soup(50), depth);
+        for (size_t views : {0, 1, 9, 200}) {
+            SCOPED_TRACE(testing::Message() << depth << " levels, " << views << " views");
+            check(tree, random_views(views), 1, 16);
+        }
+    }
+    const Svo deep = build_svo(random_soup(30, 0.02f), 9);
+    for (float epsilon : {0.0f, 0.5f, 4.0f, 1e30f}) check(deep, random_views(50), epsilon, 16, 0, ~0u, false);
+    check(deep, random_views(300), 2, 256, 100, 150, false);
+    const Svo tree = build_svo(random_soup(100), 4);
+    const auto host = host_of(tree);
+    const auto views = view_tree_ref(random_views(40), 40, vec3(-1), vec3(1));
+    auto bad = pairs_ref(host, views, 0, 40, 1, 16).pairs;
+    ASSERT_EQ(pairs_violation(host, views, 0, 40, bad), "");
+    for (TerminalPair& p : bad) p.culled = true;
+    EXPECT_NE(pairs_violation(host, views, 0, 40, bad).find("culled"), std::string::npos);
+    bad.pop_back();
+    EXPECT_NE(pairs_violation(host, views, 0, 40, bad), "");
+}
+
 TEST_F(MegaViewsTest, epsilon_and_resolution) {
     const Bsh tree = build(random_soup(100), 9);
     const auto views = random_views(60);
@@ -97,9 +135,7 @@ TEST_F(MegaViewsTest, epsilon_and_resolution) {
 
 // A tree that holds nothing, or is one place, has no pairs that sharing would save.
 TEST_F(MegaViewsTest, hard_cases) {
-    auto run = [&](const char* name, const Soup& soup, float scale = 1) {
-        SCOPED_TRACE(name);
-        const Bsh tree = build(soup, 8);
+    auto over = [&](const SceneTree& tree, const Soup& soup, float scale) {
         std::vector<View> views = random_views(40, scale);
         for (size_t i = 0; i < std::min<size_t>(soup.positions.size(), 12); ++i) {  // exactly on surfaces; two at one place
             views.push_back(view(soup.positions[i], {0, 0, 1}, 1));
@@ -107,13 +143,19 @@ TEST_F(MegaViewsTest, hard_cases) {
             views.push_back(view(soup.positions[i], {1, 0, 0}, 2));
         }
         if (!tree.empty()) {
-            const HostTree host(device, tree);
-            for (uint slot = 0; slot < host.spheres.size(); slot += 41)
+            const HostTree host = host_of(tree);
+            for (uint slot = 0; slot < host.spheres.size(); slot += std::max(41u, uint(host.spheres.size()) / 32))
                 if (!host.absent(slot)) views.push_back(view(host.sphere(slot).center, point(), 1));
         }
         views.push_back(view_of_nothing());
         check(tree, views, 1, 16);
         check(tree, std::vector<View>(100, views[0]), 1, 16);  // all alike
+    };
+    auto run = [&](const char* name, const Soup& soup, float scale = 1) {
+        SCOPED_TRACE(name);
+        over(build(soup, 8), soup, scale);
+        SCOPED_TRACE("octree");
+        over(build_svo(soup, 4), soup, scale);
     };
     run("nothing", {});
     run("one triangle", random_soup(1));

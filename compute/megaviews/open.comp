@@ -19,9 +19,10 @@ void main() {
     uint sharing = 0u;
     if (append_decides(item, push.lists)) {
         const ViewBound bound = view_bound(node);
-        const Sphere sphere = scene_sphere(slot);
-        const bool leaf = bsh_is_leaf(slot, push.leaves);
-        const uint height = bsh_height(slot, shape());
+        const TreeBlock own = tree_block(push.frames, slot >> bsh_arity_log2, shape());
+        const uint index = tree_index(own, slot);
+        const Sphere sphere = bsh_decode(own.frame, push.spheres.at[index]);
+        const bool leaf = own.height == 0u;
         if (pair_splits_views(bound.radius, sphere.radius, leaf)) {
             found = splits_views;
             const ViewGroup group = memory.groups.at[node - push.capacity];
@@ -30,22 +31,20 @@ void main() {
                 const ViewBound part = view_bound(child);
                 if (part.views == 0u) continue;
                 const View lower = memory.nodes.at[child];
-                const uint fate = pair_fate(classify_pair(lower, part.radius, sphere, leaf, height, push.epsilon, push.map_size), lower, sphere, slot, i);
+                const uint fate = pair_fate(classify_pair(lower, part.radius, sphere, leaf, own.height, push.epsilon, push.map_size), lower, sphere, index, i);
                 found += fate;
                 if ((fate & 0xffu) != 0u) sharing += part.views;
             }
         } else {
-            const uint block = bsh_block_of(slot, shape());
             const View view = memory.nodes.at[node];
-            const vec4 frame = push.frames.at[block];
-            const bool leaves = bsh_is_leaf(bsh_arity * block, push.leaves);
-            const uint below = bsh_height(bsh_arity * block, shape());
+            const TreeBlock below = tree_block(push.frames, tree_block_of(own, slot, shape()), shape());
             [[unroll]] for (uint i = 0u; i < bsh_arity; ++i) {
-                const uvec2 code = push.spheres.at[bsh_arity * block + i];
+                if (svo_tree && i >= below.children) break;
+                const uvec2 code = push.spheres.at[below.first + i];
                 if (bsh_is_absent(code)) continue;
-                const Sphere lower = bsh_decode(frame, code);
-                const uint where = classify_pair(view, bound.radius, lower, leaves, below, push.epsilon, push.map_size);
-                found += pair_fate(where, view, lower, bsh_arity * block + i, i);
+                const Sphere lower = bsh_decode(below.frame, code);
+                const uint where = classify_pair(view, bound.radius, lower, below.height == 0u, below.height, push.epsilon, push.map_size);
+                found += pair_fate(where, view, lower, below.first + i, i);
             }
             sharing = bitCount(found & 0xffu) * bound.views;
         }
@@ -66,7 +65,7 @@ void main() {
             append_kept(kept, cut_pack(slot >> bsh_arity_log2, first + findLSB(drawn), 1u << (slot & (bsh_arity - 1u))), push.lists);
         for (; open != 0u; ++next, open &= open - 1u) append_next(next, uvec2(slot, first + findLSB(open)), push.lists);
     } else {
-        const uint block = bsh_block_of(slot, shape());
+        const uint block = tree_block_of(push.frames, slot, shape());
         if (drawn != 0u) append_kept(at.y, cut_pack(block, node, drawn), push.lists);
         for (; open != 0u; ++next, open &= open - 1u) append_next(next, uvec2(bsh_arity * block + findLSB(open), node), push.lists);
     }

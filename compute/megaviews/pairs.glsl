@@ -1,11 +1,10 @@
 // What both kernels of the traversal do with pairs.
 #include "compute/append/append.glsl"
 #include "compute/megaviews/megaviews_io.h"
+#include "compute/svo/tree.glsl"
 layout(push_constant, scalar) uniform Push { PairPush push; };
 
 BshShape shape() { return BshShape(push.leaves, push.blocks); }
-
-Sphere scene_sphere(uint slot) { return bsh_decode(push.frames.at[slot >> bsh_arity_log2], push.spheres.at[slot]); }
 
 // A view node's radius, and the views below it that are wanted.
 struct ViewBound {
@@ -53,8 +52,8 @@ void count_up(uint step, uint tested, uint culled, uint edge_on, uint rendered, 
 
 const uint one_edge_on = 1u << 25;
 uint count_edge_on(uint found) { return found >> 25; }
-// What becomes of a pair, as bit i.
-uint pair_fate(uint where, View view, Sphere sphere, uint slot, uint i) {
-    if (where == pair_drawn && pair_edge_on(view, sphere, push.memory.at[0].cones.at[slot])) return one_edge_on;
+// What becomes of a pair, as bit i; `index`: where the scene node's cone is.
+uint pair_fate(uint where, View view, Sphere sphere, uint index, uint i) {
+    if (where == pair_drawn && pair_edge_on(view, sphere, push.memory.at[0].cones.at[index])) return one_edge_on;
     return pair_bit(where) << i;
 }

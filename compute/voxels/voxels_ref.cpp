@@ -22,7 +22,7 @@ std::vector<Voxel> voxels_ref(const std::vector<Corners>& triangles, const Octre
     return voxels;
 }
 
-bool meets_cell(const Corners& triangle, const OctreeCube& cube, uvec3 cell, double reach) {
+std::vector<glm::dvec3> clipped_to_cell(const Corners& triangle, const OctreeCube& cube, uvec3 cell, double reach) {
     std::vector<glm::dvec3> polygon;
     for (const vec3& p : {triangle.p0, triangle.p1, triangle.p2})
         polygon.push_back((glm::dvec3(p) - glm::dvec3(cube.origin)) * double(cube.cells_per_length) - glm::dvec3(cell));
@@ -38,7 +38,8 @@ bool meets_cell(const Corners& triangle, const OctreeCube& cube, uvec3 cell, dou
             }
             polygon = std::move(rest);
         }
-    return !polygon.empty();
+    return polygon;
 }
+bool meets_cell(const Corners& triangle, const OctreeCube& cube, uvec3 cell, double reach) { return !clipped_to_cell(triangle, cube, cell, reach).empty(); }
 
 }  // namespace myriad::compute

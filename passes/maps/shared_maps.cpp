@@ -21,7 +21,7 @@ engine::Constants sharing(engine::Constants constants) {
 SharedMaps::SharedMaps(engine::Device& device, uint32_t max_views, const engine::Constants& constants)
     : tree_(device, checked(max_views)), megaviews_(device, constants), splat_(device, sharing(constants)), fuse_(device, tree_) {}
 
-void SharedMaps::record(engine::Recorder& recorder, compute::AppendLists& lists, const compute::Bsh& scene, const engine::Array<uint>& count, uint32_t first,
+void SharedMaps::record(engine::Recorder& recorder, compute::AppendLists& lists, const compute::SceneTree& scene, const engine::Array<uint>& count, uint32_t first,
                         uint32_t limit, float epsilon, uint32_t map_size, const engine::Array<uint>& atlas, uint32_t maps) {
     {
         auto scope = recorder.scope("pairs");

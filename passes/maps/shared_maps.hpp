@@ -22,7 +22,7 @@ public:
 
     // Draws views [first, first + limit) along the curve into the first `limit` maps of an atlas that holds `maps`; the others are shared ones. Pairs that
     // are rendered are in lists.kept().
-    void record(engine::Recorder& recorder, compute::AppendLists& lists, const compute::Bsh& scene, const engine::Array<uint>& count, uint32_t first, uint32_t limit,
+    void record(engine::Recorder& recorder, compute::AppendLists& lists, const compute::SceneTree& scene, const engine::Array<uint>& count, uint32_t first, uint32_t limit,
                 float epsilon, uint32_t map_size, const engine::Array<uint>& atlas, uint32_t maps);
 
     // After the submission.

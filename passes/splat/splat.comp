@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // One invocation a group (or, on devices that limit loops, a slot of a group: specialisation constant 2).
 #include "engine/kernel.glsl"
+#include "compute/svo/tree.glsl"
 #include "passes/splat/splat_io.h"
 layout(constant_id = 2) const uint threads_per_group = 1u;
 layout(constant_id = shared_maps_constant) const bool shared_maps = false;
@@ -67,14 +68,14 @@ void main() {
     if (drawn == 0u) return;
     if (push.keeps != 0u && push.changed.at[g.view - push.first_view] == 0u) return;
     const View view = push.views.at[g.view];
-    const vec4 frame = push.tree.frames.at[g.block];
+    const TreeBlock block = tree_block(push.tree.frames, g.block, bsh_shape(push.tree));
     uint map = g.view - push.first_view;
     if (shared_maps && g.view >= push.view_capacity) map = push.first_shared + push.places.at[g.view - push.view_capacity];
     map *= map_texels(push.map_size);
     for (; drawn != 0u; drawn &= drawn - 1u) {
-        const uint slot = bsh_arity * g.block + findLSB(drawn);
-        const uvec2 box = push.tree.boxes.at[slot];
+        const uint node = block.first + findLSB(drawn);
+        const uvec2 box = push.tree.boxes.at[node];
         if (!opacity_in_view(bsh_missing(box), g.view)) continue;
-        draw(view, bsh_decode(frame, push.tree.spheres.at[slot]), push.tree.cones.at[slot], box, map);
+        draw(view, bsh_decode(block.frame, push.tree.spheres.at[node]), push.tree.cones.at[node], box, map);
     }
 }

@@ -12,7 +12,7 @@ namespace myriad::passes {
 
 struct SplatInputs {
     const compute::AppendLists& cut;     // its kept list
-    const compute::Bsh& tree;
+    const compute::SceneTree& tree;
     const engine::Array<View>& views;
     uint32_t first_view = 0, map_size = 0;
     // By view from `first_view`: 0 where the atlas holds this very map already, and keeps it. Null: it holds nothing.
@@ -25,7 +25,7 @@ struct SplatInputs {
 
 class SplatPass {
 public:
-    // `constants`: as compute::ManyLods; shared_maps_constant, where views share maps.
+    // `constants`: as compute::ManyLods; svo_constant, for octrees; shared_maps_constant, where views share maps.
     explicit SplatPass(engine::Device& device, engine::Constants constants = {});
 
     // Throws InputError when maps of this size cannot be drawn on the device (a driver that limits loops).
