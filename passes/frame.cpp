@@ -36,6 +36,7 @@ MapSettings map_settings(const FrameSettings& settings, bool far) {
     MapSettings maps = settings.maps;
     maps.method = map_method(settings.visibility, far);
     maps.seed = settings.seed;
+    maps.octree = settings.octree_levels > 0;
     return maps;
 }
 
@@ -94,6 +95,7 @@ Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::T
     if (vpl_) step("finding where light goes", [&] { prepare_paths(); });
     for (auto* gathering : {&indirect_, &natural_})
         if (*gathering) (*gathering)->place(recorder_, map_scene());
+    if (octree_) build_octree();
     if (!tree_) return;
     refit_tree();
     if (deform_ && !tree_->empty()) tree_->measure(recorder_);
@@ -107,7 +109,13 @@ void Frame::make_lighting(const scenes::Scene& scene, compute::Derived& derived,
         vpl_->sure_paths(lights_, settings.bounces);  // throws when not one path fits
     }
     if (!vpl_ && far_lights == 0) return;
-    if (settings.visibility == Visibility::manylods || settings.visibility == Visibility::megaviews) make_tree(derived);
+    if (settings.octree_levels > 0) {
+        assert(settings.visibility == Visibility::megaviews);
+        if (far_lights > 0) throw InputError("--tree svo draws no maps of an environment's lights; give --tree bsh, or leave --env out");
+        octree_.emplace(device_, derived.world(), settings.octree_levels, triangles.lo, triangles.hi);
+    } else if (settings.visibility == Visibility::manylods || settings.visibility == Visibility::megaviews) {
+        make_tree(derived);
+    }
     compute::SurfaceSampling sampling;
     if (settings.visibility == Visibility::ism) {
         sampling = step("sampling the surface", [&] { return derived.samples(settings.log2_samples, settings.seed); });
@@ -145,6 +153,12 @@ void Frame::refit_tree() {
     tree_->refit(recorder_, geometry_.positions(), geometry_.triangles(), geometry_.instances(), geometry_.opacity());
 }
 
+void Frame::build_octree() {
+    octree_->build(recorder_, geometry_.positions(), geometry_.triangles(), geometry_.instances(), geometry_.opacity());
+    if (!deform_) octree_->settle();
+    size_.octree = octree_->size();
+}
+
 void Frame::move_to(const scenes::Moment& moment) {
     const uint32_t before = lights_.moves();
     lights_.move(moment.lights);
@@ -166,6 +180,7 @@ void Frame::move_to(const scenes::Moment& moment) {
     }
     for (auto* gathering : {&indirect_, &natural_})
         if (*gathering) (*gathering)->place(recorder_, map_scene());
+    if (octree_) build_octree();
     if (tree_ && !tree_->empty()) follow_tree();
 }
 

@@ -59,6 +59,7 @@ struct FrameSettings {
     Visibility visibility = Visibility::manylods;
     MapSettings maps;
     uint32_t log2_samples = 20;   // surface samples, leaves of the BSH
+    uint32_t octree_levels = 0;   // megaviews: draws the scene's octree of so many levels below the root, built anew whenever something has moved; 0: the BSH
     float vpl_bound = 0;          // bound of the geometry term, 1/m^2; 0: pi * vpls / area (passes/gather)
     float bias = 0.5f;            // receiver bias, half diagonals of a texel
     // The sphere tree is built anew, where samples stand by then, when its extent has grown by this factor since it was built: 0: whenever
@@ -73,6 +74,7 @@ struct SceneSize {
     uint64_t triangles = 0;                       // in the world
     uint64_t stored_triangles = 0, instances = 0; // fewer where instances share them; instances that do
     uint64_t samples = 0, bsh_blocks = 0, bvh_nodes = 0, lights = 0;
+    compute::SvoSize octree;                      // as it was built last
     bool glossy = false;                          // some surface is lit as such
 };
 
@@ -139,10 +141,11 @@ private:
     void make_lighting(const scenes::Scene& scene, compute::Derived& derived, const scenes::Triangles& triangles);
     void make_tree(compute::Derived& derived);
     Gathering make_gathering(uint32_t lights, bool far, const compute::WorldTriangles& world, const IsmScene& points);
-    MapScene map_scene() const { return {.tree = tree(), .low = low_, .high = high_, .geometry = &geometry_}; }
+    MapScene map_scene() const { return {.tree = tree(), .octree = octree_ ? &*octree_ : nullptr, .low = low_, .high = high_, .geometry = &geometry_}; }
     void prepare_paths();
     void see(const scenes::Camera& camera);
     void refit_tree();
+    void build_octree();
     void follow_tree();
     void take_quality();
     void render_once(const scenes::Camera& camera);
@@ -171,6 +174,7 @@ private:
     std::optional<VplPass> vpl_;
     std::optional<EnvironmentPass> environment_;
     std::optional<compute::Bsh> tree_;
+    std::optional<compute::Svo> octree_;
     std::optional<PointsPass> points_;
     std::optional<Gathering> indirect_, natural_;  // of VPLs; of the environment's lights
     ComposePass compose_;

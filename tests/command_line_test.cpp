@@ -189,6 +189,23 @@ TEST_F(command_line, megaviews) {
                                                      {"rendered", counters["pairs_rendered"]}}));
     EXPECT_GE(counters["views_per_rendered_pair"], 1);
     EXPECT_GT(counters["peak_bytes"]["view tree"], 0);
+    EXPECT_EQ(json["settings"]["tree"], "bsh");
+}
+
+TEST_F(command_line, octree) {
+    for (const char* value : {"svo:0", "svo:13", "svo:", "octree", "bsh:3"}) refuse(2, tiny + Arguments{"-o", exr, "--visibility", "megaviews", "--tree", value}, "--tree");
+    refuse(2, tiny + Arguments{"-o", exr, "--tree", "svo"}, "--tree svo is walked by megaviews");
+    refuse(2, tiny + Arguments{"-o", exr, "--visibility", "rays", "--tree", "svo:5"}, "give --visibility megaviews");
+    refuse(3, {"render", "builtin:cornell", "-o", exr, "--size", "64x48", "--vpls", "16", "--visibility", "megaviews", "--tree", "svo:11", "--memory-limit", "64"}, "give --tree svo:10 or fewer");
+    const std::string stats = folder / "s.json";
+    succeed(tiny + Arguments{"-o", exr, "-q", "--stats", stats, "--visibility", "megaviews", "--tree", "svo:6"});
+    const auto json = nlohmann::json::parse(bytes_of(stats)), octree = json["scene"]["octree"];
+    EXPECT_EQ(json["settings"]["tree"], "svo:6");
+    EXPECT_FALSE(json["settings"].contains("log2_samples"));
+    EXPECT_FALSE(json["scene"].contains("samples"));
+    EXPECT_GT(octree["nodes"], octree["leaves"]);
+    EXPECT_EQ(octree["bytes"], 20 * octree["nodes"].get<uint64_t>() + 20 * (octree["nodes"].get<uint64_t>() - octree["leaves"].get<uint64_t>() + 1));
+    EXPECT_GT(json["frames"][0]["counters"]["pairs_rendered"], 0);
 }
 
 TEST_F(command_line, outputs_that_cannot_be_written_are_told_at_once) {

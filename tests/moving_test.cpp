@@ -150,6 +150,37 @@ TEST_F(MovingTest, with_maps_it_is_nearly_so) {
     }
 }
 
+// An octree is built anew of where things are.
+TEST_F(MovingTest, an_octree_follows) {
+    scenes::Scene scene = room(false);
+    const scenes::Triangles triangles = scenes::flatten(scene, scenes::Sharing::automatic, {{0}});
+    passes::FrameSettings s = settings(Visibility::megaviews);
+    s.octree_levels = 6;
+    passes::Frame frame(device, scene, triangles, s);
+    frame.render(scene.cameras[0]);
+    const auto start = image(frame);
+    const uint64_t pairs = frame.size().octree.pairs;
+    for (const double seconds : {0.3, 0.99, 0.0}) {
+        const scenes::Moment moment = scenes::moment_at(scene, triangles.motion, seconds);
+        frame.move_to(moment);
+        frame.render(scene.cameras[0]);
+        EXPECT_EQ(frame.size().octree.pairs == pairs, seconds == 0);
+        EXPECT_EQ(std::ranges::count(frame.times(), "octree contents", &engine::PassTime::name), 1);
+        const auto moved = image(frame);
+        scenes::Triangles then = triangles;
+        scenes::deform(then, moment);
+        scenes::Scene lit = scene;
+        lit.lights = moment.lights;
+        passes::Frame made(device, lit, then, s);
+        made.render(scene.cameras[0]);
+        EXPECT_LT(difference(moved, image(made)), 0.08) << seconds;
+        if (seconds == 0) EXPECT_LT(difference(moved, start), 1e-5);
+        else EXPECT_GT(difference(moved, start), 0.1) << "not a test";
+        frame.render(scene.cameras[0]);
+        EXPECT_EQ(std::ranges::count(frame.times(), "octree contents", &engine::PassTime::name), 0) << "nothing has moved since";
+    }
+}
+
 // A tree that has grown is built anew where that is asked for, in the frame after it was seen, and is as small as one made so.
 TEST_F(MovingTest, trees_are_measured_and_built_anew) {
     scenes::Scene scene = room(false);

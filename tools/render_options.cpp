@@ -96,6 +96,8 @@ void add_technique(CLI::App& command, RenderOptions& o) {
     });
     add_whole(command, "--samples", s.log2_samples, 0, 28, "2^N points on the surface, the leaves of the tree that is cut");
     add_choice(command, "--arity", s.maps.arity, arities(), "children of a node of that tree");
+    add_parsed(command, "--tree", "bsh|svo[:D]", show_tree(s), "the tree that is cut: over --samples, or, for --visibility megaviews, of all cells that triangles meet, D levels\nbelow the root (1 to 12, unless given 9), built anew when something moves",
+               [&s](const std::string& text) { s.octree_levels = parse_tree("--tree", text); });
     add_choice(command, "--append", s.maps.append, append_modes(), "how lists are appended to; images are the same");
     add_whole(command, "--seed", s.seed, 0, ~0u, "of the VPLs and the points; the scene does not depend on it");
 }
@@ -182,6 +184,16 @@ void parse_gather(const std::string& option, const std::string& text, passes::Fr
     throw InputError(option + " '" + text + "': give all, or subset:K, culled:K or tree:K with a whole number K from 1 on, such as subset:256");
 }
 
+std::string show_tree(const passes::FrameSettings& settings) { return settings.octree_levels ? "svo:" + std::to_string(settings.octree_levels) : "bsh"; }
+
+uint32_t parse_tree(const std::string& option, const std::string& text) {
+    constexpr std::string_view prefix = "svo:";
+    if (text == "bsh") return 0;
+    if (text == "svo") return 9;
+    if (text.starts_with(prefix)) return uint32_t(parse_whole(option, text.substr(prefix.size()), 1, compute::Svo::most_levels));
+    throw InputError(option + " '" + text + "': give bsh, svo, or svo:D with a number of levels D from 1 to " + std::to_string(compute::Svo::most_levels));
+}
+
 const Choices<uint32_t>& arities() {
     static const Choices<uint32_t> choices = {{"2", 2}, {"4", 4}, {"8", 8}};
     return choices;
@@ -260,6 +272,10 @@ void check_outputs(const RenderOptions& o) {
     if (o.frame.gather != passes::GatherMethod::subset && o.frame.maps.update != passes::CutUpdate::basic)
         throw InputError("--update " + show_update(o.frame.maps) + " needs VPLs in the same places in every frame, and --gather " + show_gather(o.frame) +
                          " takes them along a curve; give --update basic, or another --gather");
+    if (o.frame.octree_levels && o.frame.visibility != passes::Visibility::megaviews)
+        throw InputError("--tree svo is walked by megaviews, and --visibility " + choice_name(visibilities(), o.frame.visibility) + " is asked for; give --visibility megaviews with it");
+    if (o.frame.octree_levels && !o.environment.file.empty())
+        throw InputError("--tree svo draws no maps for the lights of an environment; give --tree bsh with --env");
     if (o.primary_pixels && o.frame.primary != passes::Primary::points)
         throw InputError("--primary-pixels is about points, and rays have no size; give --primary points with it");
     const RenderOptions::Environment& e = o.environment;

@@ -56,6 +56,9 @@ void parse_update(const std::string& option, const std::string& text, passes::Ma
 // --gather: all, subset:K, culled:K or tree:K.
 std::string show_gather(const passes::FrameSettings& settings);
 void parse_gather(const std::string& option, const std::string& text, passes::FrameSettings& settings);
+// --tree: bsh, which is 0 levels, or svo:D.
+std::string show_tree(const passes::FrameSettings& settings);
+uint32_t parse_tree(const std::string& option, const std::string& text);
 const Choices<scenes::SkyChoice>& sky_choices();
 const Choices<scenes::Sharing>& sharings();
 const std::vector<std::string>& layer_names();

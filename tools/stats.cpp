@@ -31,6 +31,8 @@ ordered_json scene_json(const RunRecord& run) {
     if (run.size.instances) scene["instances"] = run.size.instances, scene["stored_triangles"] = run.size.stored_triangles;
     if (run.size.samples) scene["samples"] = run.size.samples;
     if (run.size.bsh_blocks) scene["bsh_blocks"] = run.size.bsh_blocks;
+    if (const compute::SvoSize& o = run.size.octree; o.nodes)
+        scene["octree"] = {{"nodes", o.nodes}, {"leaves", o.leaves}, {"pairs_of_cell_and_triangle", o.pairs}, {"bytes", o.bytes()}};
     return scene;
 }
 
@@ -163,6 +165,8 @@ ordered_json settings_json(const passes::FrameSettings& s, float vpl_bound, bool
     json["append"] = choice_name(append_modes(), s.maps.append);
     if (s.visibility == passes::Visibility::manylods) json["update"] = show_update(s.maps);
     json["epsilon"] = shortest(s.maps.epsilon);
+    json["tree"] = show_tree(s);
+    if (s.octree_levels) return json;
     json["log2_samples"] = s.log2_samples;
     json["arity"] = s.maps.arity;
     if (std::isfinite(s.rebuild)) json["rebuild"] = shortest(s.rebuild);

@@ -11,7 +11,7 @@ namespace {
 uint32_t round_up(uint32_t value, uint32_t multiple) { return (value + multiple - 1) / multiple * multiple; }
 
 engine::Constants kind_of(const MapSettings& settings) {
-    engine::Constants constants = compute::bsh_constants(settings.arity);
+    engine::Constants constants = settings.octree ? compute::Svo::constants() : compute::bsh_constants(settings.arity);
     constants[parallel_constant] = settings.parallel;
     return constants;
 }
@@ -40,6 +40,7 @@ ViewMaps::ViewMaps(engine::Device& device, const MapSettings& settings, uint32_t
                    const IsmScene* ism)
     : device_(device), settings_(settings), batch_(round_up(std::max(max_views, 1u), multiple)), multiple_(multiple) {
     assert(!settings.parallel || settings.method == MapMethod::manylods);
+    assert(!settings.octree || settings.method == MapMethod::megaviews);
     SplatPass::check_map_size(device, settings.map_size);
     // Before the atlas, which takes its share of what memory they leave.
     if (settings.method == MapMethod::brute) brute_.emplace(device, *world);
@@ -113,8 +114,11 @@ void ViewMaps::record(engine::Recorder& recorder, const MapScene& scene, const e
         brute_->record(recorder, *scene.geometry, views, count, first, batch_, settings_.map_size, atlas_);
         return;
     }
+    if (shared_) {
+        const compute::SceneTree& drawn = settings_.octree ? static_cast<const compute::SceneTree&>(*scene.octree) : *scene.tree;
+        return shared_->record(recorder, *lists_, drawn, count, first, batch_, settings_.epsilon, settings_.map_size, atlas_, batch_ + shared_maps_);
+    }
     const compute::Bsh& tree = *scene.tree;
-    if (shared_) return shared_->record(recorder, *lists_, tree, count, first, batch_, settings_.epsilon, settings_.map_size, atlas_, batch_ + shared_maps_);
     const compute::ManyLodsInputs cut{tree, views, count, first, batch_, settings_.epsilon, settings_.map_size};
     if (manylods_) {
         auto scope = recorder.scope("cut");

@@ -7,6 +7,7 @@
 
 #include "compute/incremental/incremental.hpp"
 #include "compute/manylods/manylods.hpp"
+#include "compute/svo/svo.hpp"
 #include "passes/brute/brute.hpp"
 #include "passes/ism/ism.hpp"
 #include "passes/maps/shared_maps.hpp"
@@ -41,12 +42,14 @@ struct MapSettings {
     uint32_t lazy_edges = 1;  // q of the paper, at least 1
     bool parallel = false;    // manylods: views are parallel ones (compute/views/parallel.h), all of them
     uint32_t arity = compute::bsh_arity_default;  // of the tree
+    bool octree = false;      // megaviews: it is MapScene::octree that is drawn
     bool revalidate = false;  // incremental and lazy: every node-view in every frame, as the paper does
 };
 
 // What is drawn; a method needs but its own.
 struct MapScene {
     const compute::Bsh* tree = nullptr;   // manylods, megaviews
+    const compute::Svo* octree = nullptr; // in its place
     vec3 low{0}, high{0};                 // megaviews: a box that most views are in
     const Geometry* geometry = nullptr;   // brute, ism
 };
