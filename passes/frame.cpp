@@ -32,6 +32,12 @@ MapMethod map_method(Visibility v, bool far) {
     }
 }
 
+bool gathers_points(const scenes::Scene& scene, const scenes::Triangles& triangles, const FrameSettings& settings) {
+    const auto points = std::ranges::count(scene.lights, scenes::Light::Type::point, &scenes::Light::type);
+    if (points == 0 || triangles.triangles.empty() || settings.point_lights == PointLighting::direct) return false;
+    return settings.point_lights == PointLighting::gather || points > most_direct_points;
+}
+
 MapSettings map_settings(const FrameSettings& settings, bool far) {
     MapSettings maps = settings.maps;
     maps.method = map_method(settings.visibility, far);
@@ -64,9 +70,9 @@ Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::T
 Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles, const GeometryData& data,
              compute::Derived derived, const FrameSettings& settings)
     : device_(device), settings_(settings), recorder_(device), geometry_(step("uploading triangles", [&] { return Geometry(device, triangles, data); })),
-      lights_(step("listing lights", [&] { return LightTable(device, scene, triangles, data); })),
+      lights_(step("listing lights", [&] { return LightTable(device, scene, triangles, data, gathers_points(scene, triangles, settings)); })),
       bvh_(step("building the ray tree", [&] { return derived.bvh(device, compute::BvhQuality::quick, geometry_.opacity()); })),
-      gbuffer_(device, settings.width, settings.height, bvh_.constants(), settings.brdf == Brdf::gltf && data.glossy, settings.primary == Primary::rays), compose_(device, settings.width, settings.height),
+      gbuffer_(device, settings.width, settings.height, bvh_.constants(), settings.brdf == Brdf::gltf && data.glossy, settings.primary == Primary::rays), compose_(device, settings.width, settings.height, gathers_points(scene, triangles, settings)),
       exhausted_(device, "frame", "exhausted walks", 1), host_words_(device, "frame", "frame words", 7, engine::Location::host) {
     background_ = scene.background;
     const compute::WorldTriangles& world = derived.world();
@@ -84,6 +90,7 @@ Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::T
 
     if (DeformPass::needed(triangles)) deform_.emplace(device, triangles.motion);
     if (DirectPass::needed(lights_)) direct_.emplace(device, settings.width, settings.height, 0, bvh_.constants({{glossy_constant, size_.glossy}}));
+    if (GlowPass::needed(lights_)) glow_.emplace(device, settings.width, settings.height);
     if (scene.environment) environment_.emplace(device, scene, triangles.lo, triangles.hi, settings.maps.map_size);
     if (!triangles.triangles.empty()) make_lighting(scene, derived, triangles);
     if (settings.primary == Primary::points) {
@@ -93,7 +100,7 @@ Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::T
     }
     step("compiling kernels", [&] { recorder_.warm_up(); });
     if (vpl_) step("finding where light goes", [&] { prepare_paths(); });
-    for (auto* gathering : {&indirect_, &natural_})
+    for (auto* gathering : gatherings())
         if (*gathering) (*gathering)->place(recorder_, map_scene());
     if (octree_) build_octree();
     if (!tree_) return;
@@ -108,7 +115,8 @@ void Frame::make_lighting(const scenes::Scene& scene, compute::Derived& derived,
         vpl_.emplace(device_, settings.vpls, bvh_.constants());
         vpl_->sure_paths(lights_, settings.bounces);  // throws when not one path fits
     }
-    if (!vpl_ && far_lights == 0) return;
+    if (!lights_.points_apart().empty()) point_lights_.emplace(device_, lights_);
+    if (!vpl_ && far_lights == 0 && !point_lights_) return;
     if (settings.octree_levels > 0) {
         assert(settings.visibility == Visibility::megaviews);
         if (far_lights > 0) throw InputError("--tree svo draws no maps of an environment's lights; give --tree bsh, or leave --env out");
@@ -123,8 +131,9 @@ void Frame::make_lighting(const scenes::Scene& scene, compute::Derived& derived,
     }
     const vec3 extent = triangles.hi - triangles.lo;
     const IsmScene points{derived.world(), sampling, std::max({extent.x, extent.y, extent.z})};
-    if (vpl_) indirect_.emplace(make_gathering(settings.vpls, false, derived.world(), points));
-    if (far_lights > 0) natural_.emplace(make_gathering(far_lights, true, derived.world(), points));
+    if (vpl_) indirect_.emplace(make_gathering(settings.vpls, Lights::vpls, derived.world(), points));
+    if (far_lights > 0) natural_.emplace(make_gathering(far_lights, Lights::far, derived.world(), points));
+    if (point_lights_) lamps_.emplace(make_gathering(uint32_t(lights_.points_apart().size()), Lights::points, derived.world(), points));
 }
 
 // Once, for who comes first.
@@ -135,13 +144,14 @@ void Frame::make_tree(compute::Derived& derived) {
     size_.bsh_blocks = tree_->blocks();
 }
 
-Gathering Frame::make_gathering(uint32_t lights, bool far, const compute::WorldTriangles& world, const IsmScene& points) {
-    // Far lights have no place in a tree: they are gathered as they are when nothing else is asked for.
+Gathering Frame::make_gathering(uint32_t lights, Lights kind, const compute::WorldTriangles& world, const IsmScene& points) {
+    // Far lights have no place in a tree, and a tree of lights knows hemispheres alone: others are gathered as they are when nothing else is asked for.
+    const bool far = kind == Lights::far, vpls = kind == Lights::vpls;
     const bool picked = settings_.gather != GatherMethod::subset;
     const GatheringSettings settings{.visibility = gather_visibility(settings_.visibility), .width = settings_.width, .height = settings_.height,
-                                     .lights = lights, .method = far ? GatherMethod::subset : settings_.gather,
-                                     .subset = far && picked ? FrameSettings{}.subset : settings_.subset, .distance = settings_.gather_distance,
-                                     .seed = settings_.seed, .filter = settings_.filter, .glossy = size_.glossy, .far = far,
+                                     .lights = lights, .method = vpls ? settings_.gather : GatherMethod::subset,
+                                     .subset = !vpls && picked ? FrameSettings{}.subset : settings_.subset, .distance = settings_.gather_distance,
+                                     .seed = settings_.seed, .filter = settings_.filter, .glossy = size_.glossy, .far = far, .omni = kind == Lights::points,
                                      .bias = settings_.bias, .maps = map_settings(settings_, far)};
     return Gathering(device_, settings, bvh_.constants(), &world, &points);
 }
@@ -162,6 +172,7 @@ void Frame::build_octree() {
 void Frame::move_to(const scenes::Moment& moment) {
     const uint32_t before = lights_.moves();
     lights_.move(moment.lights);
+    if (point_lights_) point_lights_->follow(lights_);
     if (!deform_) return;
     if (!deform_->differs(moment)) {
         if (lights_.moves() != before) lights_.follow(recorder_, geometry_);  // emitters have the areas of second 0 again
@@ -178,7 +189,7 @@ void Frame::move_to(const scenes::Moment& moment) {
         auto scope = recorder_.scope("refit rays");
         bvh_.refit(recorder_, geometry_.positions(), geometry_.triangles());
     }
-    for (auto* gathering : {&indirect_, &natural_})
+    for (auto* gathering : gatherings())
         if (*gathering) (*gathering)->place(recorder_, map_scene());
     if (octree_) build_octree();
     if (tree_ && !tree_->empty()) follow_tree();
@@ -189,7 +200,7 @@ void Frame::follow_tree() {
         auto scope = recorder_.scope("rebuild");
         tree_->rebuild(recorder_, geometry_.positions(), geometry_.triangles(), geometry_.instances(), geometry_.opacity());
         tree_extent_ = 0;
-        for (auto* gathering : {&indirect_, &natural_})
+        for (auto* gathering : gatherings())
             if (*gathering) (*gathering)->forget();
     } else {
         auto scope = recorder_.scope("refit");
@@ -241,12 +252,15 @@ void Frame::render_once(const scenes::Camera& camera) {
     recorder_.fill(exhausted_, 0);
     if (indirect_) gather(*indirect_, vpl_->vpls(), vpl_->views(), vpl_->count(), pixel_angle, "gathering");
     if (natural_) gather(*natural_, environment_->lights(), environment_->views(), environment_->count(), pixel_angle, "gathering from the environment");
+    if (lamps_) gather(*lamps_, point_lights_->lights(), point_lights_->views(), point_lights_->count(), pixel_angle, "gathering from point lights");
     {
         auto scope = recorder_.scope("compose");
-        compose_.record(recorder_, gbuffer(), indirect_ ? &indirect_->irradiance() : nullptr, natural_ ? &natural_->irradiance() : nullptr, direct());
+        compose_.record(recorder_, gbuffer(), indirect_ ? &indirect_->irradiance() : nullptr, natural_ ? &natural_->irradiance() : nullptr,
+                        direct_ ? &direct_->radiance() : nullptr, lamps_ ? &lamps_->irradiance() : nullptr);
     }
     read_back_words();
     if (vpl_) counters_.vpls = host_words_.span()[0];
+    if (point_lights_) counters_.point_lights = lights_.points_apart().size();
     count_maps();
 }
 
@@ -261,16 +275,21 @@ void Frame::see(const scenes::Camera& camera) {
     if (points_) gbuffer_.record_seen(recorder_, geometry_, camera, background_);
     else gbuffer_.record(recorder_, geometry_, bvh_, camera, background_);
     if (environment_) environment_->record_background(recorder_, gbuffer(), camera);
+    if (glow_) {
+        auto glow = recorder_.scope("glow");
+        glow_->record(recorder_, gbuffer(), camera, lights_);
+    }
     if (points_) counters_.points = points_->take_counters();
 }
 
 void Frame::count_maps() {
-    for (auto* gathering : {&indirect_, &natural_})
+    for (auto* gathering : gatherings())
         if (const auto counters = *gathering ? (*gathering)->take_counters() : std::nullopt) {
             if (!counters_.maps) counters_.maps.emplace();
             *counters_.maps += *counters;
         }
-    if (settings_.visibility == Visibility::brute && vpl_) counters_.maps->triangle_views = size_.triangles * host_words_.span()[6];
+    if (settings_.visibility == Visibility::brute && counters_.maps)
+        counters_.maps->triangle_views = size_.triangles * ((vpl_ ? host_words_.span()[6] : 0) + counters_.point_lights.value_or(0));
 }
 
 // The few words of a frame that the host looks at: the number of VPLs and of views, whether there was room for all, and whether every ray
@@ -283,7 +302,7 @@ void Frame::read_back_words() {
     fetch(gbuffer_.exhausted(), 1);
     if (direct_) fetch(direct_->exhausted(), 2);
     if (vpl_) fetch(vpl_->count(), 0, 1), fetch(vpl_->count(), 5, 2), fetch(vpl_->count(), 6, 0), fetch(vpl_->exhausted(), 3);
-    if (indirect_ || natural_) fetch(exhausted_, 4);
+    if (indirect_ || natural_ || lamps_) fetch(exhausted_, 4);
     recorder_.submit_and_wait();
     for (uint exhausted : host_words_.span().subspan(1, 4))
         if (exhausted)

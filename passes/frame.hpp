@@ -1,6 +1,7 @@
 // One frame, from triangles to an image. frame.cpp reads top to bottom.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -17,6 +18,8 @@
 #include "passes/gbuffer/gbuffer.hpp"
 #include "passes/geometry/geometry.hpp"
 #include "passes/geometry/lights.hpp"
+#include "passes/glow/glow.hpp"
+#include "passes/point_lights/point_lights.hpp"
 #include "passes/points/points.hpp"
 #include "passes/tonemap/tonemap.hpp"
 #include "passes/vpl/vpl.hpp"
@@ -44,6 +47,14 @@ enum class Brdf {
     diffuse,  // the base alone: metals are black
 };
 
+// How the light of punctual point lights comes to what the camera sees.
+enum class PointLighting {
+    automatic,  // gathered where there are more than most_direct_points
+    direct,     // a shadow ray a pixel and light
+    gather,     // as VPLs' light is: by `visibility`, `gather` and `filter`
+};
+inline constexpr uint32_t most_direct_points = 32;
+
 struct FrameSettings {
     uint32_t width = 640, height = 360;
     uint32_t vpls = 4096;         // the most VPLs; 0: no indirect light
@@ -57,6 +68,7 @@ struct FrameSettings {
     float primary_pixels = 1;     // points: the largest diameter of a node that is no leaf
     Brdf brdf = Brdf::gltf;
     Visibility visibility = Visibility::manylods;
+    PointLighting point_lights = PointLighting::automatic;
     MapSettings maps;
     uint32_t log2_samples = 20;   // surface samples, leaves of the BSH
     uint32_t octree_levels = 0;   // megaviews: draws the scene's octree of so many levels below the root, built anew whenever something has moved; 0: the BSH
@@ -86,6 +98,7 @@ struct BuildStep {
 
 struct FrameCounters {
     std::optional<uint64_t> vpls;       // alive
+    std::optional<uint64_t> point_lights;  // that are gathered
     std::optional<uint64_t> prepared;   // times that light paths were prepared anew, since more VPLs lived than there is room for
     // Where the scene moves, of the sphere tree (BshQuality): its extent against what it was when built, and its overlap.
     std::optional<double> tree_growth, tree_overlap;
@@ -121,10 +134,11 @@ public:
             if (*gathering && gbuffer().glossy()) arrays.push_back(&(*gathering)->irradiance());
         return arrays;
     }
-    const engine::Array<vec4>* direct() const { return direct_ ? &direct_->radiance() : nullptr; }  // null: no punctual lights
+    const engine::Array<vec4>* direct() const { return lamps_ ? compose_.all_direct() : direct_ ? &direct_->radiance() : nullptr; }  // null: no punctual lights
     const VplPass* vpls() const { return vpl_ ? &*vpl_ : nullptr; }                              // null: nothing shines, or --vpls 0
     const compute::Bsh* tree() const { return tree_ ? &*tree_ : nullptr; }
 
+    const PointLights* point_lights() const { return point_lights_ ? &*point_lights_ : nullptr; }  // null: none that are gathered
     const FrameSettings& settings() const { return settings_; }
     uint32_t block() const { return indirect_ ? indirect_->block() : 1; }  // VPL sets are block x block
     float vpl_bound() const { return vpl_bound_; }  // 1/m^2, as used
@@ -140,7 +154,9 @@ private:
           const FrameSettings& settings);
     void make_lighting(const scenes::Scene& scene, compute::Derived& derived, const scenes::Triangles& triangles);
     void make_tree(compute::Derived& derived);
-    Gathering make_gathering(uint32_t lights, bool far, const compute::WorldTriangles& world, const IsmScene& points);
+    enum class Lights { vpls, far, points };
+    Gathering make_gathering(uint32_t lights, Lights kind, const compute::WorldTriangles& world, const IsmScene& points);
+    std::array<std::optional<Gathering>*, 3> gatherings() { return {&indirect_, &natural_, &lamps_}; }
     MapScene map_scene() const { return {.tree = tree(), .octree = octree_ ? &*octree_ : nullptr, .low = low_, .high = high_, .geometry = &geometry_}; }
     void prepare_paths();
     void see(const scenes::Camera& camera);
@@ -173,10 +189,12 @@ private:
     std::optional<DirectPass> direct_;
     std::optional<VplPass> vpl_;
     std::optional<EnvironmentPass> environment_;
+    std::optional<PointLights> point_lights_;
+    std::optional<GlowPass> glow_;
     std::optional<compute::Bsh> tree_;
     std::optional<compute::Svo> octree_;
     std::optional<PointsPass> points_;
-    std::optional<Gathering> indirect_, natural_;  // of VPLs; of the environment's lights
+    std::optional<Gathering> indirect_, natural_, lamps_;  // of VPLs; of the environment's lights; of point lights
     ComposePass compose_;
     std::optional<TonemapPass> tonemap_;
     engine::Array<uint> exhausted_, host_words_;

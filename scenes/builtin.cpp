@@ -75,6 +75,8 @@ const std::vector<Builtin>& builtins() {
          {{"light", "panel", {"panel", "point"}}, {"cells", "8", {}, 1, 256}}, make_cornell},
         {"hairball", "a ball of hair in a photographer's booth, 168 triangles a strand",
          {{"strands", "5000", {}, 1, 50000}, {"thickness", "1", {}, 0.25f, 4}}, make_hairball},
+        {"particles", "the atrium by night, lit by glowing particles that swarm through it (clip swarm)",
+         {{"count", "1024", {}, 0, 1 << 20}, {"detail", "1", {}, 0.25f, 4}}, make_particles},
         {"teatime", "a table laid for tea in a room with sunny windows",
          {{"detail", "1", {}, 0.25f, 4}}, make_teatime},
     };

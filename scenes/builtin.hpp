@@ -43,6 +43,7 @@ Scene make_atrium(const BuiltinOptions& options, uint32_t seed);
 Scene make_cathedral(const BuiltinOptions& options, uint32_t seed);
 Scene make_cornell(const BuiltinOptions& options, uint32_t seed);
 Scene make_hairball(const BuiltinOptions& options, uint32_t seed);
+Scene make_particles(const BuiltinOptions& options, uint32_t seed);
 Scene make_teatime(const BuiltinOptions& options, uint32_t seed);
 
 }  // namespace myriad::scenes

@@ -100,6 +100,7 @@ struct Light {
     glm::vec3 intensity{0};       // colour times intensity: W/sr (point, spot) or W/m^2 (directional)
     float inner_cone = 0, outer_cone = 0.785398f;  // spot: half-angles, radians
     uint32_t node = none;         // that it goes with, where that can move
+    float radius = 0;             // point: metres, of the glowing ball that it is seen as, and within which its light grows no more; 0: a mere point, not seen
 };
 
 struct Scene {

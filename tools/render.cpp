@@ -154,7 +154,7 @@ private:
     void write(const Shot& shot) {
         progress_.show("writing", 0);
         const auto& e = options_.environment;
-        run_.settings = settings_json(settings_, frame_->vpl_bound(), !e.file.empty());
+        run_.settings = settings_json(settings_, frame_->vpl_bound(), !e.file.empty() || frame_->point_lights());
         if (e.file.empty()) {
             run_.settings["sky"] = choice_name(sky_choices(), options_.sky);
         } else {

@@ -73,6 +73,9 @@ void add_technique(CLI::App& command, RenderOptions& o) {
     passes::FrameSettings& s = o.frame;
     add_choice(command, "--visibility", s.visibility, visibilities(),
                "whether a VPL sees a pixel: by its map, drawn from its cut through the scene\n(manylods), of both trees, of the scene and of the VPLs, with what is alike for many drawn once (megaviews), of all triangles (brute) or of few points (ism: imperfect shadow maps); by exact rays, the reference; or taken for granted");
+    add_choice(command, "--point-lights", s.point_lights, point_lightings(),
+               "how the scene's point lights light what is seen: by a shadow ray a pixel and light (direct), or as VPLs do, by --visibility\n"
+               "and --gather (gather), which auto does with more than " + std::to_string(passes::most_direct_points) + " of them");
     add_whole(command, "--vpls", s.vpls, 0, 1u << 24, "virtual point lights at most; 0: no indirect light");
     add_whole(command, "--bounces", s.bounces, 0, 64, "diffuse reflections of light before what the camera sees");
     add_parsed(command, "--gather", "all|subset:K|culled:K|tree:K", show_gather(s), "VPLs that each pixel gathers: all; or about K, a different subset for each pixel\n"
@@ -131,6 +134,12 @@ const char* const footer =
 const Choices<passes::Visibility>& visibilities() {
     using passes::Visibility;
     static const Choices<Visibility> choices = {{"manylods", Visibility::manylods}, {"megaviews", Visibility::megaviews}, {"brute", Visibility::brute}, {"ism", Visibility::ism}, {"rays", Visibility::rays}, {"none", Visibility::none}};
+    return choices;
+}
+
+const Choices<passes::PointLighting>& point_lightings() {
+    using passes::PointLighting;
+    static const Choices<PointLighting> choices = {{"auto", PointLighting::automatic}, {"direct", PointLighting::direct}, {"gather", PointLighting::gather}};
     return choices;
 }
 

@@ -46,6 +46,7 @@ struct RenderOptions {
 };
 
 const Choices<passes::Visibility>& visibilities();
+const Choices<passes::PointLighting>& point_lightings();
 const Choices<passes::Primary>& primaries();
 const Choices<passes::Brdf>& brdfs();
 const Choices<compute::AppendMode>& append_modes();

@@ -39,6 +39,7 @@ ordered_json scene_json(const RunRecord& run) {
 ordered_json counters_json(const FrameRun& frame) {
     ordered_json counters = ordered_json::object();
     if (frame.counters.vpls) counters["vpls"] = *frame.counters.vpls;
+    if (frame.counters.point_lights) counters["point_lights"] = *frame.counters.point_lights;
     if (frame.counters.prepared) counters["light_paths_prepared"] = *frame.counters.prepared;
     if (frame.counters.tree_growth) counters["tree_growth"] = *frame.counters.tree_growth;
     if (frame.counters.tree_overlap) counters["tree_overlap"] = *frame.counters.tree_overlap;
@@ -85,6 +86,7 @@ double mebibytes(uint64_t bytes) { return double(bytes) / (1 << 20); }
 std::string counters_text(const FrameRun& frame) {
     std::string text;
     if (frame.counters.vpls) text += format("%llu VPLs alive", static_cast<unsigned long long>(*frame.counters.vpls));
+    if (frame.counters.point_lights) text += format(", %llu point lights gathered", static_cast<unsigned long long>(*frame.counters.point_lights));
     if (frame.counters.prepared) text += ", light paths prepared anew";
     const auto& maps = frame.counters.maps;
     if (maps && maps->triangle_views) text += format(", %llu triangles drawn in views, %u batches", static_cast<unsigned long long>(maps->triangle_views), maps->batches);
@@ -144,13 +146,14 @@ std::vector<PassSum> median_passes(const std::vector<FrameRun>& frames) {
     return medians;
 }
 
-ordered_json settings_json(const passes::FrameSettings& s, float vpl_bound, bool environment) {
+ordered_json settings_json(const passes::FrameSettings& s, float vpl_bound, bool other_lights) {
     ordered_json json = {{"width", s.width}, {"height", s.height}, {"seed", s.seed}, {"brdf", choice_name(brdfs(), s.brdf)}, {"vpls", s.vpls}};
     if (s.primary == passes::Primary::points) {
         json["primary"] = choice_name(primaries(), s.primary), json["primary_pixels"] = shortest(s.primary_pixels);
         json["append"] = choice_name(append_modes(), s.maps.append), json["log2_samples"] = s.log2_samples;
     }
-    if (s.vpls == 0 && !environment) return json;
+    if (s.point_lights != passes::PointLighting::automatic) json["point_lights"] = choice_name(point_lightings(), s.point_lights);
+    if (s.vpls == 0 && !other_lights) return json;
     if (s.vpls > 0) json["bounces"] = s.bounces;
     json["visibility"] = choice_name(visibilities(), s.visibility);
     json["gather"] = show_gather(s);

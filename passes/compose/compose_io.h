@@ -10,8 +10,10 @@ struct ComposePush {
     Float4s irradiance;     // with has_irradiance; then, with has_mirrored, as many of what lobes reflect
     Float4s natural;        // with has_natural: the same of the environment's lights
     Float4s direct;         // with has_direct
+    Float4s lamps;          // with has_lamps: irradiance, likewise, of lights that are gathered; what it brings counts as direct light
     Float4s indirect, beauty;
-    uint count, has_irradiance, has_natural, has_mirrored, has_direct;
+    Float4s all_direct;     // with has_lamps: direct and theirs
+    uint count, has_irradiance, has_natural, has_mirrored, has_direct, has_lamps;
 };
 MYRIAD_END
 

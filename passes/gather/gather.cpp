@@ -10,11 +10,12 @@ using engine::passes_kernels;
 
 namespace {
 
-engine::Program program(engine::Device& device, GatherVisibility visibility, engine::Constants variant, bool glossy, bool far, bool listed) {
+engine::Program program(engine::Device& device, GatherVisibility visibility, engine::Constants variant, bool glossy, bool far, bool listed, bool omni) {
     variant[glossy_constant] = glossy;
     variant[parallel_constant] = far;
+    variant[gather_omni_constant] = omni;
     if (visibility == GatherVisibility::rays) return {device, passes_kernels, "gather/rays", variant};
-    return {device, passes_kernels, "gather/maps", {{2, visibility == GatherVisibility::maps}, {glossy_constant, glossy}, {parallel_constant, far}, {gather_listed_constant, listed}}};
+    return {device, passes_kernels, "gather/maps", {{2, visibility == GatherVisibility::maps}, {glossy_constant, glossy}, {parallel_constant, far}, {gather_listed_constant, listed}, {gather_omni_constant, omni}}};
 }
 
 }  // namespace
@@ -26,8 +27,8 @@ uint32_t gather_block(uint32_t lights, uint32_t subset) {
 }
 
 GatherPass::GatherPass(engine::Device& device, GatherVisibility visibility, uint32_t width, uint32_t height,
-                       const engine::Constants& variant, bool glossy, bool far, bool listed)
-    : device_(device), visibility_(visibility), program_(program(device, visibility, variant, glossy, far, listed)),
+                       const engine::Constants& variant, bool glossy, bool far, bool listed, bool omni)
+    : device_(device), visibility_(visibility), program_(program(device, visibility, variant, glossy, far, listed, omni)),
       irradiance_(device, "images", "irradiance", uint64_t(width) * height * (glossy ? 2 : 1)) {}
 
 uint32_t GatherPass::max_vpls(uint32_t block) const {

@@ -31,9 +31,9 @@ struct GatherInputs {
 class GatherPass {
 public:
     // `glossy`: for a G-buffer with gloss. `far`: the lights are infinitely far, each a far_light() with a parallel view.
-    // `listed`: maps only, VPLs are not in the order of their sets (GatherInputs::listed).
+    // `listed`: maps only, VPLs are not in the order of their sets (GatherInputs::listed). `omni`: lights are omni_light()s.
     GatherPass(engine::Device& device, GatherVisibility visibility, uint32_t width, uint32_t height, const engine::Constants& variant = {},
-               bool glossy = false, bool far = false, bool listed = false);
+               bool glossy = false, bool far = false, bool listed = false, bool omni = false);
 
     void clear(engine::Recorder& recorder) { recorder.fill(irradiance_, 0); }
 

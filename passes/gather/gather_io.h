@@ -27,6 +27,8 @@ struct GatherPush {
 // Specialisation constant: VPLs are listed.
 const uint gather_listed_constant = 23u;
 const uint gather_listed_bits = 20u;
+// Specialisation constant: lights are omni_light()s.
+const uint gather_omni_constant = 24u;
 
 // "rays": the same, with a BVH in place of the atlas.
 struct GatherRaysPush {
@@ -90,6 +92,30 @@ MYRIAD_FN Transfer far_transfer(vec3 n, vec3 n_g, Lobe lobe, Vpl light) {
     const Reflectance r = reflectance_of(lobe, n, to_light, solid_angle * (1.0f / pi));
     t.diffuse *= r.diffuse;
     t.glossy = min(r.glossy * cosine, 1.0f / max(solid_angle, 1e-30f));
+    t.power = r.power;
+    return t;
+}
+
+// Likewise of a light that shines alike in all directions: flux / pi is its intensity. Like far light it does not come through the surface from behind.
+MYRIAD_FN Transfer omni_transfer(vec3 x, vec3 n, vec3 n_g, Lobe lobe, Vpl light) {
+    Transfer t;
+    t.diffuse = 0.0f;
+    t.glossy = 0.0f;
+    t.power = 0.0f;
+    const vec3 d = light.position - x;
+    const float d2 = dot(d, d);
+    const float cosine = dot(n, d);  // times |d|
+    if (!(d2 > 1e-24f && cosine > 0.0f && dot(n_g, d) > 0.0f)) return t;  // in the light itself there is no direction
+    // What it stands for is a ball: on its surface irradiance is intensity / radius^2, and no more than that where a receiver is inside.
+    const float radius = omni_radius(light);
+    const float bound = 1.0f / max(radius * radius, 1e-24f);
+    const float g = min(1.0f / d2, bound) * (cosine / sqrt(d2));
+    t.diffuse = g;
+    if (lobe.alpha2 == 0.0f) return t;
+    // As transfer_of: the ball widens the lobe, and is reflected no brighter than it is: intensity * glossy <= intensity / (pi radius^2).
+    const Reflectance r = reflectance_of(lobe, n, d / sqrt(d2), min(radius * radius / d2, 1.0f));
+    t.diffuse *= r.diffuse;
+    t.glossy = min(r.glossy * g, bound * (1.0f / pi));
     t.power = r.power;
     return t;
 }

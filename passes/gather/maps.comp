@@ -5,6 +5,7 @@
 #include "passes/gather/seen.glsl"
 layout(constant_id = 2) const bool use_maps = true;
 layout(constant_id = glossy_constant) const bool glossy = false;
+layout(constant_id = gather_omni_constant) const bool omni = false;
 layout(constant_id = gather_listed_constant) const bool listed = false;
 layout(push_constant, scalar) uniform Push { GatherPush push; };
 
@@ -63,6 +64,7 @@ void main() {
         const Vpl vpl = push.vpls.at[i];
         Transfer t;
         if (parallel_views) t = far_transfer(n, n_g, lobe, vpl);
+        else if (omni) t = omni_transfer(x, n, n_g, lobe, vpl);
         else t = transfer_of(x, n, lobe, vpl.position, unpack_direction(vpl.normal), push.bound);
         if (t.diffuse > 0.0f) {
             const uint map = (i - push.first_map) * map_texels(push.map_size);

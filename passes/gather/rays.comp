@@ -5,6 +5,7 @@
 #include "compute/raytrace/trace.glsl"
 #include "passes/gather/gather_io.h"
 layout(constant_id = glossy_constant) const bool glossy = false;
+layout(constant_id = gather_omni_constant) const bool omni = false;
 layout(push_constant, scalar) uniform Push { GatherRaysPush push; };
 
 void main() {
@@ -34,11 +35,12 @@ void main() {
         const Vpl vpl = push.vpls.at[i];
         Transfer t;
         if (parallel_views) t = far_transfer(n, n_g, lobe, vpl);
+        else if (omni) t = omni_transfer(x, n, n_g, lobe, vpl);
         else t = transfer_of(x, n, lobe, vpl.position, unpack_direction(vpl.normal), push.bound);
         const bool asks = receives && t.diffuse > 0.0f;
         if (!subgroupAny(asks)) continue;
         const vec3 way = parallel_views ? far_direction(vpl) : vpl.position - origin;
-        const float far = parallel_views ? 1e30f : 1.0f;
+        const float far = parallel_views ? 1e30f : omni ? 0.9999f : 1.0f;  // omni: as passes/direct, a lamp that touches a surface is not hidden by it
         if (trace_occluded(push.bvh, origin, way, 0.0f, asks ? far : -1.0f) || !asks) continue;
         sum += vpl.flux * (t.diffuse * scale);
         if (glossy) mirrored += vpl.flux * (t.glossy * scale) * brdf_fresnel(lobe.f0, t.power);

@@ -17,7 +17,7 @@ bool own_order(const GatheringSettings& settings) {
 }
 
 // Where there are no more lights than a pixel may gather, it gathers them all.
-bool picks(const GatheringSettings& s) { return s.method != GatherMethod::subset && !s.far && s.subset < s.lights; }
+bool picks(const GatheringSettings& s) { return s.method != GatherMethod::subset && !s.far && !s.omni && s.subset < s.lights; }
 
 GatheringSettings checked(GatheringSettings s) {
     if (s.method != GatherMethod::subset && !picks(s)) s.method = GatherMethod::subset, s.subset = 0;
@@ -44,7 +44,7 @@ Gathering::Gathering(engine::Device& device, const GatheringSettings& settings, 
                       PickSettings{.method = s.method == GatherMethod::culled ? PickMethod::culled : PickMethod::tree, .visibility = s.visibility, .width = s.width,
                                    .height = s.height, .vpls = s.lights, .picks = s.subset, .block = block_, .seed = s.seed, .glossy = s.glossy, .reach = s.distance},
                       variant);
-    else gather_.emplace(device, s.visibility, s.width, s.height, variant, s.glossy, s.far, reorders);
+    else gather_.emplace(device, s.visibility, s.width, s.height, variant, s.glossy, s.far, reorders, s.omni);
     if (picks(s) && !own_order(s)) views_.emplace(device, s.lights);
     if (s.filter && block_ > 1) filter_.emplace(device, s.width, s.height, s.glossy);
     if (maps) maps_.emplace(device, s.maps, s.lights, picks(s) ? 1 : block_ * block_, world, ism);

@@ -30,6 +30,7 @@ struct GatheringSettings {
     bool filter = true;       // blocks of pixels that gather subsets
     bool glossy = false;      // the G-buffer has gloss
     bool far = false;         // lights are far_light()s, their views parallel
+    bool omni = false;        // lights are omni_light()s, their views see all around
     float bias = 0.5f;        // half diagonals of a texel
     MapSettings maps;         // visibility by maps
 };

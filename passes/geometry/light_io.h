@@ -16,8 +16,8 @@ struct Light {
     float cdf;           // share of this light and all before it, by power where nothing else is said; the last is 1
     vec3 intensity;      // W/sr (point, spot), W/m^2 (directional), radiance (triangle; the mean over its texture)
     uint triangle;       // emissive triangle only
-    vec3 extent;         // directional: the size of the scene's bounds; x alone: the width of a spot's falloff, a cosine;
-                         // the area of a triangle in m^2, both sides counted where it is double-sided
+    vec3 extent;         // directional: the size of the scene's bounds; x alone: the width of a spot's falloff, a cosine; a point's radius
+                         // in metres; the area of a triangle in m^2, both sides counted where it is double-sided
     float cos_outer;     // spot only
 };
 MYRIAD_ARRAY(Lights, Light, 16)

@@ -37,6 +37,8 @@ Light punctual_light(const scenes::Light& from, const vec3& lo, const vec3& size
     } else if (light.type == light_directional) {
         light.position = lo;
         light.extent = size;
+    } else {
+        light.extent.x = from.radius;
     }
     return light;
 }
@@ -113,10 +115,16 @@ double area_of(const Corners& c) {
 
 }  // namespace
 
-LightData light_data(const scenes::Scene& scene, const scenes::Triangles& triangles, const GeometryData& geometry) {
+LightData light_data(const scenes::Scene& scene, const scenes::Triangles& triangles, const GeometryData& geometry, bool points_apart) {
     LightData data;
-    for (const scenes::Light& light : scene.lights) {
-        data.lights.push_back(punctual_light(light, triangles.lo, triangles.hi - triangles.lo));
+    if (points_apart) {
+        const auto is_other = [&](uint32_t i) { return scene.lights[i].type != scenes::Light::Type::point; };
+        data.order.resize(scene.lights.size());
+        std::iota(data.order.begin(), data.order.end(), 0u);
+        data.apart = uint32_t(data.order.end() - std::stable_partition(data.order.begin(), data.order.end(), is_other));
+    }
+    for (uint32_t i = 0; i < scene.lights.size(); ++i) {
+        data.lights.push_back(punctual_light(scene.lights[points_apart ? data.order[i] : i], triangles.lo, triangles.hi - triangles.lo));
         data.powers.push_back(power_of(data.lights.back()));
     }
     data.punctual = uint32_t(data.lights.size());
@@ -170,8 +178,8 @@ void move_lights(std::vector<Light>& copy, std::span<const Light> punctual_now, 
     if (left_out) share_out(copy, weights);
 }
 
-LightTable::LightTable(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles, const GeometryData& geometry)
-    : LightTable(device, light_data(scene, triangles, geometry)) {}
+LightTable::LightTable(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles, const GeometryData& geometry, bool points_apart)
+    : LightTable(device, light_data(scene, triangles, geometry, points_apart)) {}
 
 LightTable::LightTable(engine::Device& device, LightData data)
     : device_(device), data_(std::move(data)), lights_(engine::upload(device, "scene", "lights", data_.lights)),
@@ -184,8 +192,9 @@ void LightTable::move(std::span<const scenes::Light> lights) {
     std::vector<Light> now;
     for (size_t i = 0; i < lights.size(); ++i) {
         const Light& before = data_.lights[i];
-        assert(uint(lights[i].type) == before.type);
-        now.push_back(punctual_light(lights[i], before.position, before.extent));
+        const scenes::Light& light = lights[data_.order.empty() ? i : data_.order[i]];
+        assert(uint(light.type) == before.type);
+        now.push_back(punctual_light(light, before.position, before.extent));
         now.back().cdf = before.cdf;
     }
     if (now.empty() || std::memcmp(now.data(), data_.lights.data(), now.size() * sizeof(Light)) == 0) return;

@@ -15,12 +15,15 @@ struct LightData {
     std::vector<Light> lights;
     std::vector<double> powers;  // W, mean of R, G, B, a light: what `cdf` shares out
     uint32_t punctual = 0;       // the first so many; the rest are emissive triangles
-    uint32_t environment = 0;    // the last so many of the punctual ones stand for the environment
+    uint32_t environment = 0;    // of the punctual ones, those that stand for the environment: the last but for points that are apart
+    uint32_t apart = 0;          // the last so many of the punctual ones are the point lights, where they are asked for apart; else 0
+    std::vector<uint32_t> order; // of the punctual ones, by place here: which of the scene's; empty: the same
     double power = 0;            // of all
+    uint32_t guided() const { return punctual - apart; }  // that paths are guided from (passes/vpl): the first
     std::vector<Emitter> moving; // the emissive triangles that do; all of them, for one without area may get some
 };
 // `geometry`: what geometry_data makes of the same.
-LightData light_data(const scenes::Scene& scene, const scenes::Triangles& triangles, const GeometryData& geometry);
+LightData light_data(const scenes::Scene& scene, const scenes::Triangles& triangles, const GeometryData& geometry, bool points_apart = false);
 
 // Sets each light's cdf, so that lights are chosen in proportion to these weights, a light's share of the whole each.
 void share_out(std::vector<Light>& lights, const std::vector<double>& weights);
@@ -31,7 +34,8 @@ void move_lights(std::vector<Light>& copy, std::span<const Light> punctual_now, 
 
 class LightTable {
 public:
-    LightTable(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles, const GeometryData& geometry);
+    // `points_apart`: point lights come after all other punctual ones, for who takes care of them.
+    LightTable(engine::Device& device, const scenes::Scene& scene, const scenes::Triangles& triangles, const GeometryData& geometry, bool points_apart = false);
 
     // The scene's punctual lights have moved: they are as many, of the same kinds, in the same order. Between submissions. Does
     // nothing where they stand as they stood.
@@ -47,7 +51,8 @@ public:
     const engine::Array<Light>& array() const { return lights_; }
     uint32_t count() const { return uint32_t(lights_.count()); }
     uint32_t punctual() const { return data_.punctual; }
-    uint32_t lamps() const { return data_.punctual - data_.environment; }  // the punctual ones that stand for nothing else, which are first
+    uint32_t lamps() const { return data_.punctual - data_.environment - data_.apart; }  // the punctual ones that are nobody else's, which are first
+    std::span<const Light> points_apart() const { return std::span(data_.lights).subspan(data_.punctual - data_.apart, data_.apart); }
     bool has_emissive() const { return count() > punctual(); }
     double power() const { return data_.power; }   // 0: nothing shines
     const LightData& data() const { return data_; }  // for who weighs the lights anew

@@ -37,7 +37,7 @@ float into_strip(uint first, float x, out uint strip, inout float density) {
 
 vec2 guide(uint light, vec2 x, out float density) {
     density = 1.0;
-    if (!guided) return x;
+    if (!guided || light >= push.guided_layers >> 8) return x;
     uint column, row;
     const float place = into_strip(light * guide_floats, x.x, column, density);
     return vec2(place, into_strip(light * guide_floats + guide_side * (column + 1u), x.y, row, density));
@@ -63,7 +63,7 @@ void main() {
         // What the choice of the light left over chooses the side.
         if (s.double_sided && (selection - before) / share >= 0.5) s.geometric_normal = -s.geometric_normal;
         leave_vpl(0u, path, s, pi * light.extent.x * to_path * s.emission, 0u);
-    } else if (push.on.layer < push.layers) {
+    } else if (push.on.layer < (push.guided_layers & 255u)) {
         float density;
         const Emission e = emit_punctual(light, guide(chosen, x.xy, density));
         follow_ray(path, e.origin, e.direction, e.flux * (to_path / density), 1u);

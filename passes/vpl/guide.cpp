@@ -24,7 +24,7 @@ void append_ends(std::vector<float>& ends, std::span<const double> weights) {
 std::vector<PilotTally> run_pilot(engine::Recorder& recorder, const Geometry& geometry, const compute::Bvh& bvh, const LightTable& lights,
                                   uint32_t seed, const engine::Constants& variant) {
     engine::Device& device = recorder.device();
-    const uint32_t cells = lights.punctual() * guide_cells, samples = samples_a_cell(lights.punctual());
+    const uint32_t guided = lights.data().guided(), cells = guided * guide_cells, samples = samples_a_cell(guided);
     const engine::Array<PilotTally> tallies(device, "vpls", "pilot tallies", cells);
     if (cells > 0) {
         const engine::Program pilot(device, engine::passes_kernels, "vpl/pilot", variant);
@@ -56,7 +56,7 @@ std::vector<double> weights(const LightData& lights, const GuideData& guide) {
 GuideData guide_data(const LightData& lights, std::span<const PilotTally> tallies, uint32_t samples) {
     GuideData guide{lights.lights, {}, std::vector<double>(lights.lights.size(), 1.0)};
     std::vector<double> cells(guide_cells);
-    for (uint32_t light = 0; light < lights.punctual; ++light) {
+    for (uint32_t light = 0; light < lights.guided(); ++light) {
         const std::span<const PilotTally> own = tallies.subspan(size_t(light) * guide_cells, guide_cells);
         double mean = 0;
         for (const PilotTally& t : own) mean += double(t.second) / samples / guide_cells;
@@ -76,7 +76,7 @@ GuideData guide_data(const LightData& lights, std::span<const PilotTally> tallie
 
 EmissionGuide::EmissionGuide(engine::Recorder& recorder, const Geometry& geometry, const compute::Bvh& bvh, const LightTable& lights,
                              uint32_t seed, const engine::Constants& variant)
-    : device_(recorder.device()), data_(guide_data(lights.data(), run_pilot(recorder, geometry, bvh, lights, seed, variant), samples_a_cell(lights.punctual()))),
+    : device_(recorder.device()), data_(guide_data(lights.data(), run_pilot(recorder, geometry, bvh, lights, seed, variant), samples_a_cell(lights.data().guided()))),
       moves_(lights.moves()), shares_(engine::upload(recorder.device(), "vpls", "guided shares", shares_of(data_.lights))),
       cells_(engine::upload(recorder.device(), "vpls", "guide", data_.cells)) {}
 

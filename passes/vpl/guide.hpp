@@ -16,10 +16,10 @@ inline constexpr double guide_floor = 0.05;
 
 struct GuideData {
     std::vector<Light> lights;  // as in the table, but for `cdf`, which is the guided choice; only that goes to the device
-    std::vector<float> cells;   // guide_floats a punctual light
+    std::vector<float> cells;   // guide_floats a light that is guided (LightData::guided)
     std::vector<double> worth;  // a light: what its power was multiplied by, the mean of its cells
 };
-// `tallies`: guide_cells a punctual light, each of `samples` paths.
+// `tallies`: guide_cells a guided light, each of `samples` paths.
 GuideData guide_data(const LightData& lights, std::span<const PilotTally> tallies, uint32_t samples);
 
 class EmissionGuide {

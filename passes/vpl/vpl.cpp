@@ -114,7 +114,8 @@ void VplPass::record_paths(engine::Recorder& recorder, const Geometry& geometry,
     recorder.fill(alive_, 0);
     recorder.dispatch(guide_ ? emit_guided_ : emit_,
                       VplEmitPush{.on = on_layer(first_hits), .lights = lights.read(recorder), .shares = guide_ ? guide_->shares(recorder) : Floats{},
-                                  .cells = guide_ ? guide_->cells(recorder) : Floats{}, .light_count = lights.count(), .layers = layers},
+                                  .cells = guide_ ? guide_->cells(recorder) : Floats{}, .light_count = lights.count(),
+                                  .guided_layers = (guide_ ? lights.data().guided() : 0) << 8 | layers},
                       paths);
     for (uint32_t layer = 1; layer < layers; ++layer) recorder.dispatch(bounce_, VplBouncePush{.on = on_layer(layer)}, paths);
 

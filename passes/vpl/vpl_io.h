@@ -30,6 +30,17 @@ MYRIAD_FN Vpl far_light(vec3 to_light, vec3 irradiance, float solid_angle) {
 MYRIAD_FN vec3 far_direction(Vpl light) { return light.position; }
 MYRIAD_FN float far_solid_angle(Vpl light) { return uintBitsToFloat(light.normal); }
 
+// So is one that shines alike in all directions (gather_omni_constant): its flux is pi times its intensity. Within its radius its light grows no more.
+MYRIAD_FN Vpl omni_light(vec3 position, vec3 intensity, float radius) {
+    Vpl light;
+    light.position = position;
+    light.normal = floatBitsToUint(radius);
+    light.flux = pi * intensity;
+    light.bounce = 0u;
+    return light;
+}
+MYRIAD_FN float omni_radius(Vpl light) { return uintBitsToFloat(light.normal); }
+
 const uint vpl_max_bounces = 64u;
 
 // What all path kernels need. Slot `layer * paths + path` is for the VPL that a path leaves at its `layer`-th vertex.
@@ -76,9 +87,9 @@ struct VplEmitPush {
     VplPaths on;
     Lights lights;       // chosen by `cdf`, or where specialisation constant 2 says so, by the guide's
     Floats shares;       // the guide's `cdf`, by light
-    Floats cells;        // the guide's: guide_floats a punctual light
+    Floats cells;        // the guide's: guide_floats a guided light
     uint light_count;
-    uint layers;
+    uint guided_layers;  // lights that the guide has cells of, which are the first << 8 | layers
 };
 
 // "vpl/bounce": continues each path from the layer below.

@@ -69,7 +69,7 @@ std::vector<Vpl> vpl_ref(const scenes::Scene& scene, const scenes::Triangles& tr
             if (!leave()) continue;
             direction = dvec3(cosine_direction(vec2(x.z, x.w), unpack_direction(pack_direction(vec3(normal)))));
         } else {
-            const GuidedPlace from = guide ? guided_place_ref(*guide, chosen, vec2(x)) : GuidedPlace{vec2(x), 1};
+            const GuidedPlace from = guide && chosen < table.guided() ? guided_place_ref(*guide, chosen, vec2(x)) : GuidedPlace{vec2(x), 1};
             const Emission e = emit_punctual(light, from.place);
             at = dvec3(e.origin), direction = dvec3(e.direction), normal = dvec3(0);
             flux = dvec3(e.flux) / (share * paths * from.density);

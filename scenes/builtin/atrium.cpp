@@ -51,7 +51,7 @@ const std::array<Side, 4> sides = {{
 
 class Atrium {
 public:
-    Atrium(float detail, uint32_t seed) : detail_(detail), cell_(0.5f / detail), random_(seed) {}
+    Atrium(float detail, uint32_t seed, vec3 sun, vec3 sky) : detail_(detail), cell_(0.5f / detail), sun_(sun), sky_(sky), random_(seed) {}
 
     Scene make() {
         materials();
@@ -355,7 +355,7 @@ private:
     // sight out of the court, so that the cameras see no void. Being near, it wastes little of its light outside.
     void sky() {
         const uint32_t material = kit::add_material(scene_, "sky", vec3(0.2f));
-        scene_.materials[material].emissive = sky_radiance;
+        scene_.materials[material].emissive = sky_;
         Primitive& out = of(material);
         constexpr float ridge = 17, eaves = 10.9f;
         const float rise = (ridge - 10.6f) / -sun_direction.y;
@@ -373,13 +373,14 @@ private:
     }
 
     void lights_and_cameras() {
-        scene_.lights.push_back({Light::Type::directional, "sun", {0, 30, 0}, sun_direction, sun_irradiance});
+        if (sun_ != vec3(0)) scene_.lights.push_back({Light::Type::directional, "sun", {0, 30, 0}, sun_direction, sun_});
         kit::add_camera(scene_, "court", {-11.0f, 1.75f, 1.3f}, {2.0f, 3.55f, -0.9f}, 62);
         kit::add_camera(scene_, "gallery", {-3.2f, 7.05f, 7.2f}, {1.6f, 6.35f, -4.5f}, 62);
         kit::add_camera(scene_, "corner", {-11.0f, 2.0f, 2.5f}, {2.0f, 4.5f, -4.2f}, 66);
     }
 
     const float detail_, cell_;
+    const vec3 sun_, sky_;  // irradiance, radiance
     kit::Random random_;
     Scene scene_;
     std::map<uint32_t, Primitive> building_;
@@ -390,6 +391,8 @@ private:
 
 }  // namespace
 
-Scene make_atrium(const BuiltinOptions& options, uint32_t seed) { return Atrium(options.number("detail"), seed).make(); }
+Scene make_atrium(const BuiltinOptions& options, uint32_t seed) { return Atrium(options.number("detail"), seed, sun_irradiance, sky_radiance).make(); }
+
+Scene atrium::without_sun(float detail, uint32_t seed, vec3 sky_radiance) { return Atrium(detail, seed, vec3(0), sky_radiance).make(); }
 
 }  // namespace myriad::scenes

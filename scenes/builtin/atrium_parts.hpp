@@ -6,6 +6,9 @@
 
 namespace myriad::scenes::atrium {
 
+// The building and what is in it, without the sun and under a sky of this radiance.
+Scene without_sun(float detail, uint32_t seed, glm::vec3 sky_radiance);
+
 // Heights of the building that pieces must agree on, in metres.
 inline constexpr float bay = 3.0f;             // from column axis to column axis
 inline constexpr float gallery_floor = 0.12f;  // the lower gallery stands a step above the court
