@@ -20,7 +20,7 @@ constexpr double round = 16;                    // seconds
 constexpr int keys = 32;                        // a round; the fastest turn in 8 of them
 constexpr vec3 night{0.006f, 0.010f, 0.022f};   // radiance of the sky
 constexpr double whole = 260;                   // W/sr, of all particles together
-constexpr double ball = 1.2;                    // metres: all particles' discs together are as large as one of this radius, so that they are as bright whatever their number
+constexpr double ball = 2.4;                    // metres: all particles' discs together are as large as one of this radius, so that they are as bright whatever their number
 
 // Where a particle is after a part t of a round.
 struct Way {
@@ -104,7 +104,7 @@ Scene make_particles(const BuiltinOptions& options, uint32_t seed) {
         const double share = 0.5 + double(random.real());
         sum += share * (double(p.color.x) + double(p.color.y) + double(p.color.z)) / 3;
         scene.nodes.push_back({.rest = {.translation = dvec3(vec3(p.way.at(0)))}});
-        scene.lights.push_back({.position = vec3(p.way.at(0)), .intensity = float(share) * p.color, .node = i, .radius = float(std::min(0.06, ball / std::sqrt(double(count))))});
+        scene.lights.push_back({.position = vec3(p.way.at(0)), .intensity = float(share) * p.color, .node = i, .radius = float(std::min(0.08, ball / std::sqrt(double(count))))});
         swarm.channels.push_back({i, i, Path::translation});
         swarm.tracks.push_back(track(p.way));
     }
