@@ -68,14 +68,14 @@ TEST(Kit, SrgbIsTheFormulaRounded) {
 }
 
 TEST(Builtin, EqualSeedsEqualScenes) {
-    for (const char* source : {"builtin:atrium?detail=0.5", "builtin:cathedral?detail=0.25", "builtin:cornell", "builtin:hairball?strands=300", "builtin:teatime?detail=0.25"})
+    for (const char* source : {"builtin:atrium?detail=0.5", "builtin:cathedral?detail=0.25", "builtin:cornell", "builtin:hairball?strands=300", "builtin:particles?detail=0.25", "builtin:teatime?detail=0.25"})
         EXPECT_EQ(hash_of(source, 1), hash_of(source, 1)) << source;
     for (const char* source : {"builtin:atrium?detail=0.5", "builtin:cathedral?detail=0.25", "builtin:hairball?strands=300", "builtin:teatime?detail=0.25"})
         EXPECT_NE(hash_of(source, 1), hash_of(source, 2)) << source;
 }
 
 TEST(Builtin, TrianglesAreClean) {
-    for (const char* source : {"builtin:atrium", "builtin:atrium?detail=0.25", "builtin:cathedral", "builtin:cathedral?detail=0.25", "builtin:teatime", "builtin:teatime?detail=0.25", "builtin:cornell",
+    for (const char* source : {"builtin:atrium", "builtin:atrium?detail=0.25", "builtin:cathedral", "builtin:cathedral?detail=0.25", "builtin:teatime", "builtin:teatime?detail=0.25", "builtin:particles", "builtin:cornell",
                                "builtin:cornell?cells=1&light=point", "builtin:hairball?strands=20000", "builtin:hairball?strands=1&thickness=0.25"}) {
         Scene scene = load(source);
         const Triangles t = flatten(scene, Sharing::never);

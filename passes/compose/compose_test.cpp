@@ -11,19 +11,24 @@ using glm::dvec3;
 class ComposeTest : public engine::DeviceTest {
 protected:
     struct Result {
-        std::vector<vec4> indirect, beauty;
+        std::vector<vec4> indirect, beauty, direct;
     };
-    Result run(const HostGBuffer& host, const std::vector<vec4>* irradiance, const std::vector<vec4>* natural, const std::vector<vec4>* direct) {
+    Result run(const HostGBuffer& host, const std::vector<vec4>* irradiance, const std::vector<vec4>* natural, const std::vector<vec4>* direct,
+               const std::vector<vec4>* lamps = nullptr) {
         const GBuffer gbuffer = host.on(device);
-        engine::Array<vec4> e, n, d;
+        engine::Array<vec4> e, n, d, l;
         if (irradiance) e = on_device(*irradiance);
         if (natural) n = on_device(*natural);
         if (direct) d = on_device(*direct);
-        ComposePass compose(device, host.width, host.height);
+        if (lamps) l = on_device(*lamps);
+        ComposePass compose(device, host.width, host.height, lamps != nullptr);
         engine::Recorder recorder(device);
-        compose.record(recorder, gbuffer, irradiance ? &e : nullptr, natural ? &n : nullptr, direct ? &d : nullptr);
+        compose.record(recorder, gbuffer, irradiance ? &e : nullptr, natural ? &n : nullptr, direct ? &d : nullptr, lamps ? &l : nullptr);
         recorder.submit_and_wait();
-        return {engine::download(device, compose.indirect()), engine::download(device, compose.beauty())};
+        Result result{engine::download(device, compose.indirect()), engine::download(device, compose.beauty())};
+        EXPECT_EQ(compose.all_direct() != nullptr, lamps != nullptr);
+        if (lamps) result.direct = engine::download(device, *compose.all_direct());
+        return result;
     }
     std::vector<vec4> random_image(size_t n, float scale) {
         std::uniform_real_distribution<float> unit(0, scale);
@@ -39,7 +44,7 @@ protected:
     static size_t differing(const std::vector<ComposedRef>& expected, const Result& got) {
         const auto off = [](const dvec3& e, const vec4& v) { return !(length(e - dvec3(v)) <= 1e-6 * length(e)); };
         size_t wrong = 0;
-        for (size_t i = 0; i < expected.size(); ++i) wrong += off(expected[i].indirect, got.indirect[i]) || off(expected[i].beauty, got.beauty[i]);
+        for (size_t i = 0; i < expected.size(); ++i) wrong += off(expected[i].indirect, got.indirect[i]) || off(expected[i].beauty, got.beauty[i]) || (!got.direct.empty() && off(expected[i].direct, got.direct[i]));
         return wrong;
     }
 };
@@ -63,6 +68,18 @@ TEST_F(ComposeTest, equals_the_twin_with_and_without_each_light) {
             EXPECT_EQ(differing(compose_ref(g, e, n, d), got), 0u) << width << "x" << height << ", lights " << lights;
             for (size_t i = 0; i < g.pixels(); ++i) EXPECT_TRUE(got.indirect[i].w == 0 && got.beauty[i].w == 1 && (e || n || got.indirect[i] == vec4(0)));
         }
+    }
+}
+
+TEST_F(ComposeTest, lamps_are_direct_light) {
+    for (bool glossy : {false, true}) {
+        HostGBuffer g = random_gbuffer(33, 9);
+        if (glossy)
+            for (size_t i = 0; i < g.pixels(); ++i) g.shine(i, vec3(0.5f), 0.5f, {0, 0, 1});
+        const auto irradiance = random_image(g.pixels() * (glossy ? 2 : 1), 9), lamps = random_image(irradiance.size(), 9), direct = random_image(g.pixels(), 3);
+        for (const auto* d : {static_cast<const std::vector<vec4>*>(nullptr), &direct})
+            for (const auto* e : {static_cast<const std::vector<vec4>*>(nullptr), &irradiance})
+                EXPECT_EQ(differing(compose_ref(g, e, nullptr, d, &lamps), run(g, e, nullptr, d, &lamps)), 0u) << glossy;
     }
 }
 

@@ -74,6 +74,42 @@ std::vector<GatherRef> far_gather_ref(const HostGBuffer& gbuffer, const std::vec
     return out;
 }
 
+std::vector<GatherRef> omni_gather_ref(const HostGBuffer& gbuffer, const std::vector<Vpl>& lights, uint block, const SeenRef& seen) {
+    std::vector<GatherRef> out(gbuffer.pixels());
+    for (size_t p = 0; p < out.size(); ++p) {
+        if (!gbuffer.hit(p)) continue;
+        const size_t x = p % gbuffer.width, y = p / gbuffer.width;
+        for (size_t i = x % block + y % block * block; i < lights.size(); i += block * block) {
+            const dvec3 d = dvec3(lights[i].position) - dvec3(gbuffer.position(p)), n(gbuffer.shading(p));
+            const double distance = length(d), radius = omni_radius(lights[i]);
+            if (distance < 1e-12) continue;
+            const double cosine = dot(n, d) / distance, over = dot(dvec3(gbuffer.geometric(p)), d) / distance;
+            // A place is as good as its floats, and a near light's direction with it.
+            const double turn = 4e-7 + 2e-7 * length(dvec3(gbuffer.position(p))) / distance;
+            if (std::min(cosine, over) < -turn) continue;
+            Seen s = seen(p, i);
+            if (std::min(cosine, over) < turn) s = {0.5 * s.share, s.slack + 0.5 * s.share};
+            const dvec3 intensity = dvec3(lights[i].flux) / std::numbers::pi * double(block * block);
+            const double spread = 1 / std::pow(std::max(distance, std::max(radius, 1e-12)), 2), g = spread * std::max(cosine, 0.0);
+            const double rounding = spread * 3 * turn;
+            const Lobe lobe = gbuffer.lobe(p);
+            const double widening = std::min(std::pow(radius / distance, 2), 1.0);
+            const BrdfRef f = brdf_ref(gbuffer.gloss_ref(p), n, dvec3(lobe.view), d / distance, widening);
+            const double diffuse = std::numbers::pi * f.diffuse;
+            out[p].irradiance += intensity * (diffuse * g * s.share);
+            out[p].slack += intensity * (diffuse * (s.slack * g + rounding * (s.share + s.slack)));
+            const double glossy = std::min(f.glossy * g, 1 / (std::numbers::pi * radius * radius));
+            out[p].mirrored += intensity * f.fresnel * glossy * s.share;
+            const double half_width = std::sqrt(lobe.alpha2 + widening);
+            const double doubt = std::min(2 * turn / std::max(cosine, 1e-9) + 5 * turn / (half_width * length(d / distance + dvec3(lobe.view))) + 1e-3, 1.0);
+            out[p].mirrored_slack += intensity * f.fresnel * glossy * (s.slack + doubt * (s.share + s.slack));
+        }
+        out[p].slack += 1e-5 * out[p].irradiance;
+        out[p].mirrored_slack += 1e-5 * out[p].mirrored;
+    }
+    return out;
+}
+
 Seen parallel_seen_ref(const dvec3& x, const dvec3& n_g, const View& view, const uint* map, uint size, double bias) {
     const ParallelFrame frame = parallel_frame(view.direction);
     const dvec3 d = x - dvec3(view.position), n(view.direction), across(frame.across), down(frame.down);

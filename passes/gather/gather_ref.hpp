@@ -30,6 +30,10 @@ std::vector<GatherRef> gather_ref(const HostGBuffer& gbuffer, const std::vector<
 std::vector<GatherRef> far_gather_ref(const HostGBuffer& gbuffer, const std::vector<Vpl>& lights, uint block,
                                       const SeenRef& seen = [](size_t, size_t) { return seen_whole; });
 
+// The same of lights that shine alike in all directions (omni_light).
+std::vector<GatherRef> omni_gather_ref(const HostGBuffer& gbuffer, const std::vector<Vpl>& lights, uint block,
+                                       const SeenRef& seen = [](size_t, size_t) { return seen_whole; });
+
 // What the map of a parallel view lets its light see of the receiver x.
 Seen parallel_seen_ref(const glm::dvec3& x, const glm::dvec3& n_g, const View& view, const uint* map, uint size, double bias);
 

@@ -51,6 +51,7 @@ protected:
         uint map_size = 0;
         float bias = 0;
         const std::vector<uint>* listed = nullptr;  // GatherInputs::listed
+        bool omni = false;                       // the lights are omni_light()s
         const std::vector<View>* far = nullptr;  // the lights are infinitely far, and these their views
     };
     // None, or maps when there is an atlas.
@@ -58,7 +59,7 @@ protected:
         const GBuffer gbuffer = host.on(device);
         const auto on = on_device(vpls);
         const auto count = on_device(std::vector<uint>{uint(vpls.size())});
-        GatherPass gather(device, o.atlas ? GatherVisibility::maps : GatherVisibility::none, host.width, host.height, {}, gbuffer.glossy(), o.far, o.listed);
+        GatherPass gather(device, o.atlas ? GatherVisibility::maps : GatherVisibility::none, host.width, host.height, {}, gbuffer.glossy(), o.far, o.listed, o.omni);
         const auto views = on_device(o.far ? *o.far : std::vector<View>{view_of_nothing()});
         const auto listed = on_device(o.listed ? *o.listed : std::vector<uint>{0});
         const GatherInputs in{gbuffer, on, count, o.block, o.bound, o.far ? &views : nullptr, o.listed ? &listed : nullptr};

@@ -115,10 +115,10 @@ struct UploadedScene {
     compute::Bvh bvh;
     LightTable lights;
 
-    UploadedScene(engine::Device& device, const TestScene& from)
+    UploadedScene(engine::Device& device, const TestScene& from, bool points_apart = false)
         : data(geometry_data(from.scene, from.triangles)), geometry(device, from.triangles, data),
           bvh(device, data.world, compute::BvhQuality::quick, geometry.opacity()),
-          lights(device, from.scene, from.triangles, data) {}
+          lights(device, from.scene, from.triangles, data, points_apart) {}
 };
 
 }  // namespace myriad::passes

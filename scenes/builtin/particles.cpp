@@ -20,7 +20,7 @@ constexpr double round = 16;                    // seconds
 constexpr int keys = 32;                        // a round; the fastest turn in 8 of them
 constexpr vec3 night{0.006f, 0.010f, 0.022f};   // radiance of the sky
 constexpr double whole = 260;                   // W/sr, of all particles together
-constexpr double ball = 2.4;                    // metres: all particles' discs together are as large as one of this radius, so that they are as bright whatever their number
+constexpr double ball = 1.8;                    // metres: all particles' discs together are as large as one of this radius, so that they are as bright whatever their number
 
 // Where a particle is after a part t of a round.
 struct Way {
@@ -39,8 +39,8 @@ struct Way {
     dvec3 velocity(double t) const { return (at(t + 1e-4) - at(t - 1e-4)) / (2e-4 * round); }
 };
 
-// Columns whose arches on both sides are free of cloth (atrium.cpp, cloths()): x, z, and which storey.
-constexpr std::array<vec3, 12> columns = {{{-9, 0, -4.5f}, {9, 0, 4.5f}, {0, 0, 4.5f}, {-9, 0, 4.5f}, {-12, 0, -1.5f}, {-12, 0, 1.5f},
+// Columns whose arches on both sides are free of cloth, and that no shrub stands at (atrium.cpp, cloths(), furnish_court()): x, z, and which storey.
+constexpr std::array<vec3, 10> columns = {{{9, 0, 4.5f}, {0, 0, 4.5f}, {-12, 0, -1.5f}, {-12, 0, 1.5f},
                                            {-3, 1, -4.5f}, {0, 1, -4.5f}, {9, 1, -4.5f}, {9, 1, 4.5f}, {6, 1, 4.5f}, {-3, 1, 4.5f}}};
 
 struct Particle {
@@ -61,19 +61,19 @@ Particle particle(kit::Random& random) {
         w.middle = {1.5, 0, 0};
         w.radius = (0.25 + 3.0 * up * up) * (1 + real(-0.12, 0.12)), w.height = 2.75 + 5.6 * up, w.lift = 0.22;
         w.turns = 4 - std::round(3 * up);
-        p.color = glm::mix(vec3(1.0f, 0.42f, 0.12f), vec3(1.0f, 0.74f, 0.38f), real(0, 1) * up);
+        p.color = glm::mix(vec3(1.0f, 0.24f, 0.03f), vec3(1.0f, 0.58f, 0.14f), real(0, 1) * up);
     } else if (kind < 12) {
         const bool upper = kind >= 9;
         w.kind = Way::Kind::ribbon;
         w.radius = 0.5 * std::sqrt(real(0, 1)), w.height = upper ? 6.6 : 4.3, w.lift = upper ? 0.7 : 1.0, w.turns = upper ? -1 : 1, w.twist = 3;
-        p.color = upper ? glm::mix(vec3(0.30f, 0.42f, 1.0f), vec3(0.70f, 0.36f, 1.0f), real(0, 1)) : glm::mix(vec3(0.10f, 0.78f, 0.85f), vec3(0.24f, 0.95f, 0.55f), real(0, 1));
+        p.color = upper ? glm::mix(vec3(0.12f, 0.24f, 1.0f), vec3(0.58f, 0.14f, 1.0f), real(0, 1)) : glm::mix(vec3(0.03f, 0.52f, 0.80f), vec3(0.06f, 0.85f, 0.34f), real(0, 1));
     } else {
         const vec3& column = columns[random.below(uint32_t(columns.size()))];
         const bool upper = column.y > 0;
         w.kind = Way::Kind::column;
         w.middle = {column.x, upper ? 7.30 : 1.75, column.z};
         w.radius = real(0.62, 0.98), w.height = upper ? real(-0.15, 0.15) : real(-0.5, 0.5), w.lift = upper ? 0.2 : 0.5, w.turns = sign() * (2 + double(random.below(2)));
-        p.color = upper ? vec3(1.0f, 0.36f, 0.55f) : vec3(1.0f, 0.80f, 0.30f);
+        p.color = upper ? vec3(1.0f, 0.14f, 0.30f) : vec3(1.0f, 0.62f, 0.12f);
     }
     return p;
 }
