@@ -79,7 +79,7 @@ std::vector<PassSum> sum_passes(const std::vector<engine::PassTime>& passes);
 std::vector<PassSum> median_passes(const std::vector<FrameRun>& frames);
 double median(std::vector<double> values);  // of an even number: the mean of the middle two; not empty
 
-// The settings under the names of their options; what the technique does not use is absent. `environment`: there is one.
+// The settings under the names of their options; what the technique does not use is absent. `other_lights`: some are gathered beside VPLs.
 nlohmann::ordered_json settings_json(const passes::FrameSettings& settings, float vpl_bound, bool other_lights = false);
 double shortest(float value);                // as people write it: 0.1, not 0.10000000149
 
