@@ -167,6 +167,7 @@ ordered_json settings_json(const passes::FrameSettings& s, float vpl_bound, bool
     if (s.visibility != passes::Visibility::manylods && s.visibility != passes::Visibility::megaviews) return json;
     json["append"] = choice_name(append_modes(), s.maps.append);
     if (s.visibility == passes::Visibility::manylods) json["update"] = show_update(s.maps);
+    if (s.visibility == passes::Visibility::megaviews) json["fusion"] = choice_name(fusions(), s.maps.asks);
     json["epsilon"] = shortest(s.maps.epsilon);
     json["tree"] = show_tree(s);
     if (s.octree_levels) return json;

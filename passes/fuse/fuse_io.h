@@ -6,10 +6,18 @@
 #include "compute/manylods/cut_io.h"
 #include "compute/view_tree/view_tree_io.h"
 #include "compute/views/paraboloid.h"
+#include "passes/fuse/shared_map.h"
 #include "passes/splat/splat_io.h"
 
 MYRIAD_BEGIN
-const uint fuse_no_map = 0xffffffffu;
+// "fuse/reach": one invocation a level. The inner nodes above views [first, first + limit): of a level neighbours, for nodes follow the curve.
+struct FuseReachPush {
+    ViewGroups groups;
+    ViewLevels levels;
+    ViewLevels reached;
+    Uints inner_nodes;  // inner_nodes.at[0]: of all levels
+    uint view_capacity, inner, first, limit;
+};
 
 // "fuse/mark": one invocation a group of the kept list. Inner view nodes that something is drawn for get a map.
 struct FuseMarkPush {
@@ -23,12 +31,13 @@ struct FuseMarkPush {
 // "fuse/count": one invocation, after a scan of the marks. Whether there are maps enough; if not the lists fail.
 struct FuseCountPush {
     Uints places;       // by inner node, then the total
+    Uints inner_nodes;
     AppendStates lists;
     Uints needed;       // needed.at[0]: maps of inner nodes
-    uint inner, room;
+    uint room;
 };
 
-// "fuse/inherit": one invocation an inner node of a level, the root's level first.
+// "fuse/inherit": one invocation a reached inner node of a level, the root's level first.
 struct FuseInheritPush {
     ViewGroups groups;
     ViewLevels levels;
@@ -37,7 +46,7 @@ struct FuseInheritPush {
     uint level, view_capacity, inner;
 };
 
-// "fuse/fuse": fuse_threads invocations a node. Of a level's inner nodes, or of views [first, first + limit).
+// "fuse/fuse": fuse_threads invocations a node. Of a level's reached inner nodes, or of views [first, first + limit).
 const uint fuse_threads = 32u;
 struct FusePush {
     Views nodes;
@@ -53,12 +62,15 @@ struct FusePush {
 };
 const uint fuse_of_views = 0xffffffffu;
 
-// The depth that a texel has in a map at `offset` from the one that shows it at depth t, its middle towards the unit direction w: the surface stays
-// where it is, the texel is the same (MegaViews 3.2, "fusion").
-MYRIAD_FN float fused_depth(vec3 offset, vec3 w, float t) {
-    const vec3 q = t * w - offset;
-    return sqrt(q.x * q.x + q.y * q.y + q.z * q.z);
-}
+// "fuse/ask": one invocation a view of [first, first + limit).
+struct FuseAskPush {
+    Views nodes;
+    Uints count;
+    Uints places;
+    Uints above;
+    SharedMapArray shared_maps;
+    uint view_capacity, map_size, first, limit;
+};
 MYRIAD_END
 
 #endif

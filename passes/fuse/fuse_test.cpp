@@ -182,6 +182,39 @@ TEST_F(FuseTest, maps_grow_to_what_is_shared) {
     EXPECT_TRUE(engine::same(ample.atlas, engine::download(device, maps.atlas(), uint64_t(n) * texels)));
 }
 
+// A map that is not fused with what its view shares, and the shared map that it names, hold what the fused map does, to the bit.
+TEST_F(FuseTest, asking_shared_maps_finds_what_fused_maps_have) {
+    std::vector<View> views = clusters(120, 40, 0.003f);
+    views[7] = view_of_nothing();
+    const uint n = uint(views.size());
+    const auto on = on_device(views);
+    const auto count = on_device(std::vector<uint>{n});
+    const MapScene map_scene{.tree = tree.get(), .low = vec3(-2), .high = vec3(2)};
+    engine::Recorder recorder(device);
+    const auto atlas_of = [&](ViewMaps& maps, uint words) {
+        maps.begin(recorder, map_scene, on, count);
+        maps.record(recorder, map_scene, on, count, 0);
+        recorder.submit_and_wait();
+        EXPECT_TRUE(maps.accept());
+        return engine::download(device, maps.atlas(), words);
+    };
+    ViewMaps whole(device, {.map_size = size, .epsilon = 2, .method = MapMethod::megaviews, .shared_maps = 200}, n, 1);
+    ViewMaps parts(device, {.map_size = size, .epsilon = 2, .method = MapMethod::megaviews, .shared_maps = 200, .asks = true}, n, 1);
+    EXPECT_EQ(whole.asked(), nullptr);
+    const auto fused = atlas_of(whole, n * texels), apart = atlas_of(parts, (n + 200) * texels);
+    const auto asked = engine::download(device, *parts.asked(), n);
+    std::vector<uint> found(apart.begin(), apart.begin() + n * texels);
+    for (uint i = 0; i < n; ++i)
+        for (uint texel = 0; texel < texels && asked[i].first != fuse_no_map; ++texel) {
+            const uint depth = apart[asked[i].first + texel];
+            if (depth == atlas_nothing || asked[i].offset.x > 1e10f) continue;
+            const vec3 w = unproject(texel / (size * size), texel_middle(texel % size, texel / size % size, size));
+            found[i * texels + texel] = std::min(found[i * texels + texel], floatBitsToUint(fused_depth(asked[i].offset, w, uintBitsToFloat(depth))));
+        }
+    EXPECT_FALSE(engine::same(fused, std::vector<uint>(apart.begin(), apart.begin() + n * texels))) << "nothing is shared: not a test";
+    EXPECT_EQ(differing(fused, found, 1e-5f), 0);
+}
+
 // By hand: a wall one metre before the node's middle, seen from a view that stands a tenth nearer.
 TEST(FusedDepth, follows_the_view) {
     EXPECT_NEAR(fused_depth({0.1f, 0, 0}, {1, 0, 0}, 1), 0.9f, 1e-6f);

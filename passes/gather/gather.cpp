@@ -10,12 +10,14 @@ using engine::passes_kernels;
 
 namespace {
 
-engine::Program program(engine::Device& device, GatherVisibility visibility, engine::Constants variant, bool glossy, bool far, bool listed, bool omni) {
-    variant[glossy_constant] = glossy;
-    variant[parallel_constant] = far;
-    variant[gather_omni_constant] = omni;
+engine::Program program(engine::Device& device, GatherVisibility visibility, engine::Constants variant, const GatherKind& kind) {
+    variant[glossy_constant] = kind.glossy;
+    variant[parallel_constant] = kind.far;
+    variant[gather_omni_constant] = kind.omni;
     if (visibility == GatherVisibility::rays) return {device, passes_kernels, "gather/rays", variant};
-    return {device, passes_kernels, "gather/maps", {{2, visibility == GatherVisibility::maps}, {glossy_constant, glossy}, {parallel_constant, far}, {gather_listed_constant, listed}, {gather_omni_constant, omni}}};
+    return {device, passes_kernels, "gather/maps",
+            {{2, visibility == GatherVisibility::maps}, {glossy_constant, kind.glossy}, {parallel_constant, kind.far}, {gather_listed_constant, kind.listed},
+             {gather_omni_constant, kind.omni}, {gather_asks_constant, kind.asks}}};
 }
 
 }  // namespace
@@ -27,9 +29,9 @@ uint32_t gather_block(uint32_t lights, uint32_t subset) {
 }
 
 GatherPass::GatherPass(engine::Device& device, GatherVisibility visibility, uint32_t width, uint32_t height,
-                       const engine::Constants& variant, bool glossy, bool far, bool listed, bool omni)
-    : device_(device), visibility_(visibility), program_(program(device, visibility, variant, glossy, far, listed, omni)),
-      irradiance_(device, "images", "irradiance", uint64_t(width) * height * (glossy ? 2 : 1)) {}
+                       const engine::Constants& variant, const GatherKind& kind)
+    : device_(device), visibility_(visibility), program_(program(device, visibility, variant, kind)),
+      irradiance_(device, "images", "irradiance", uint64_t(width) * height * (kind.glossy ? 2 : 1)) {}
 
 uint32_t GatherPass::max_vpls(uint32_t block) const {
     // A ray may take thousands of loop iterations, a map look-up takes the one of its VPL.
@@ -57,12 +59,11 @@ void GatherPass::record_maps(engine::Recorder& recorder, const GatherInputs& in,
                                      .irradiance = recorder.write(irradiance_),
                                      .first = first + done,
                                      .limit = std::min(part, limit - done),
-                                     .block = in.block,
-                                     .map_size = map_size,
+                                     .sides = gather_sides(in.block, map_size, lists != nullptr),
                                      .first_map = first,
-                                     .has_failed = lists != nullptr,
                                      .bound = in.bound,
                                      .bias = bias,
+                                     .asked = in.asked ? recorder.read(*in.asked) : SharedMapArray{},
                                      .listed = in.listed ? recorder.read(*in.listed) : Uints{}},
                           threads(in));
 }

@@ -26,14 +26,21 @@ struct GatherInputs {
     float bound = 1e30f;               // 1/m^2; far lights have none
     const engine::Array<View>* views = nullptr;  // maps of far lights: their views
     const engine::Array<uint>* listed = nullptr; // maps: as GatherPush::listed, where the pass was made for it
+    const engine::Array<SharedMap>* asked = nullptr; // maps: by map of the recording, as GatherPush::asked, where the pass was made for it
+};
+
+// What a pass is made for.
+struct GatherKind {
+    bool glossy = false;  // the G-buffer has gloss
+    bool far = false;     // the lights are infinitely far, each a far_light() with a parallel view
+    bool listed = false;  // maps only: VPLs are not in the order of their sets (GatherInputs::listed)
+    bool omni = false;    // lights are omni_light()s
+    bool asks = false;    // maps only: they lack what is shared (GatherInputs::asked)
 };
 
 class GatherPass {
 public:
-    // `glossy`: for a G-buffer with gloss. `far`: the lights are infinitely far, each a far_light() with a parallel view.
-    // `listed`: maps only, VPLs are not in the order of their sets (GatherInputs::listed). `omni`: lights are omni_light()s.
-    GatherPass(engine::Device& device, GatherVisibility visibility, uint32_t width, uint32_t height, const engine::Constants& variant = {},
-               bool glossy = false, bool far = false, bool listed = false, bool omni = false);
+    GatherPass(engine::Device& device, GatherVisibility visibility, uint32_t width, uint32_t height, const engine::Constants& variant = {}, const GatherKind& kind = {});
 
     void clear(engine::Recorder& recorder) { recorder.fill(irradiance_, 0); }
 

@@ -157,7 +157,7 @@ TEST_F(GatherFarTest, exact_maps_tend_to_rays_and_rays_to_brute_force) {
         const GBuffer gbuffer = g.on(device);
         const auto on = on_device(lights);
         const auto count = on_device(std::vector<uint>{uint(lights.size())}), status = on_device(std::vector<uint>{0});
-        GatherPass gather(device, GatherVisibility::rays, g.width, g.height, uploaded.bvh.constants(), false, true);
+        GatherPass gather(device, GatherVisibility::rays, g.width, g.height, uploaded.bvh.constants(), {.far = true});
         engine::Recorder recorder(device);
         gather.clear(recorder);
         gather.record_rays(recorder, {gbuffer, on, count, 1}, 0, uint32_t(lights.size()), uploaded.bvh, 1, status);

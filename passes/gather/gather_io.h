@@ -4,6 +4,7 @@
 
 #include "compute/views/paraboloid.h"
 #include "compute/views/parallel.h"
+#include "passes/fuse/shared_map.h"
 #include "passes/gbuffer/gbuffer_io.h"
 #include "passes/vpl/vpl_io.h"
 
@@ -17,11 +18,11 @@ struct GatherPush {
     Views views;              // maps of far lights only: of all of them
     Float4s irradiance;       // glossy: then, pixel by pixel, what lobes reflect of the same light (radiance)
     uint first, limit;        // VPLs [first, min(first + limit, count)); first is a multiple of block^2
-    uint block;               // k: sets of VPLs, and pixels of a block, are k x k
-    uint map_size, first_map; // maps only
-    uint has_failed;
+    uint sides;               // gather_sides
+    uint first_map;           // maps only
     float bound;              // 1/m^2
     float bias;               // maps only, texels
+    SharedMapArray asked;     // by map; where maps lack what their views share
     Uints listed;             // where VPLs are not in the order of their sets: set << gather_listed_bits | index of a VPL, in ascending order
 };
 // Specialisation constant: VPLs are listed.
@@ -29,6 +30,14 @@ const uint gather_listed_constant = 23u;
 const uint gather_listed_bits = 20u;
 // Specialisation constant: lights are omni_light()s.
 const uint gather_omni_constant = 24u;
+// Specialisation constant: maps lack what their views share.
+const uint gather_asks_constant = 25u;
+
+// k: sets of VPLs, and pixels of a block, are k x k; texels a side of a half map; and whether `failed` is given.
+MYRIAD_FN uint gather_sides(uint block, uint map_size, bool has_failed) { return block | (has_failed ? 0x8000u : 0u) | (map_size << 16); }
+MYRIAD_FN uint gather_block_of(uint sides) { return sides & 0x7fffu; }
+MYRIAD_FN uint gather_map_size_of(uint sides) { return sides >> 16; }
+MYRIAD_FN bool gather_may_fail(uint sides) { return (sides & 0x8000u) != 0u; }
 
 // "rays": the same, with a BVH in place of the atlas.
 struct GatherRaysPush {
@@ -169,6 +178,10 @@ MYRIAD_FN MapTexel map_texel(MapQuery q, int right, int below, uint size) {
     t.index = texel_index(q.half_index, tx, ty, size);
     t.distance = (on_plane > 0.0f && on_plane < q.distance ? on_plane : q.distance) - q.bias;
     return t;
+}
+// And the direction to its middle.
+MYRIAD_FN vec3 map_texel_towards(MapQuery q, int right, int below, uint size) {
+    return unproject(q.half_index, texel_middle(uint(clamp(q.x + right, 0, int(size) - 1)), uint(clamp(q.y + below, 0, int(size) - 1)), size));
 }
 MYRIAD_FN float map_seen(float stored_depth, MapTexel t) { return stored_depth < t.distance ? 0.0f : 1.0f; }
 // The share of x that is seen, of the four answers in the order of rows.

@@ -134,6 +134,33 @@ TEST_F(GatherMapsTest, equals_the_twin_on_random_maps) {
         }
 }
 
+// Maps that lack what their views share, beside maps that hold it: as the map that both would make. Some share nothing, some see nothing.
+TEST_F(GatherMapsTest, asks_own_maps_and_shared_ones) {
+    const uint size = 9, texels = map_texels(size), n = 40, shared_maps = 5;
+    const HostGBuffer g = random_gbuffer(21, 15);
+    const auto vpls = random_vpls(n);
+    std::vector<uint> apart((n + shared_maps) * texels);
+    for (uint& texel : apart) texel = floatBitsToUint(random() % 3 ? uniform(0, 3) : infinity());
+    std::vector<uint> whole(apart.begin(), apart.begin() + n * texels);
+    std::vector<SharedMap> asked;
+    for (uint i = 0; i < n; ++i) {
+        asked.push_back({0.1f * point(), i % 7 == 0 ? fuse_no_map : (n + uint(random() % shared_maps)) * texels});
+        for (uint t = 0; t < texels && asked[i].first != fuse_no_map; ++t) {
+            const vec3 w = unproject(t / (size * size), texel_middle(t % size, t / size % size, size));
+            const float far = uintBitsToFloat(apart[asked[i].first + t]);
+            if (far < infinity()) whole[i * texels + t] = std::min(whole[i * texels + t], floatBitsToUint(fused_depth(asked[i].offset, w, far)));
+        }
+    }
+    for (uint block : {1u, 4u}) {
+        const auto expected = gather_ref(g, vpls, block, 3, [&](size_t p, size_t i) {
+            return map_seen_ref(dvec3(g.position(p)), dvec3(g.geometric(p)), dvec3(vpls[i].position), &whole[i * texels], size, 0.5);
+        });
+        const auto got = run(g, vpls, {.block = block, .bound = 3, .atlas = &apart, .map_size = size, .bias = 0.5f, .asked = &asked});
+        EXPECT_TRUE(near(expected, got));
+        EXPECT_FALSE(near(expected, run(g, vpls, {.block = block, .bound = 3, .atlas = &apart, .map_size = size, .bias = 0.5f}))) << "not a test";
+    }
+}
+
 // With maps of exact depths, what is left of error is their resolution: it falls as maps grow.
 TEST_F(GatherMapsTest, exact_maps_tend_to_exact_visibility) {
     TestScene scene;

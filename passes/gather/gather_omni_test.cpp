@@ -24,7 +24,7 @@ protected:
         const GBuffer gbuffer = g.on(device);
         const auto on = on_device(lights);
         const auto count = on_device(std::vector<uint>{uint(lights.size())}), status = on_device(std::vector<uint>{0});
-        GatherPass gather(device, GatherVisibility::rays, g.width, g.height, uploaded.bvh.constants(), gbuffer.glossy(), false, false, true);
+        GatherPass gather(device, GatherVisibility::rays, g.width, g.height, uploaded.bvh.constants(), {.glossy = gbuffer.glossy(), .omni = true});
         engine::Recorder recorder(device);
         gather.clear(recorder);
         for (uint32_t first = 0; first < lights.size(); first += part) gather.record_rays(recorder, {gbuffer, on, count, block}, first, part, uploaded.bvh, reach, status);

@@ -38,7 +38,7 @@ protected:
         const GBuffer gbuffer = g.on(device);
         const auto on = on_device(vpls);
         const auto count = on_device(std::vector<uint>{uint(vpls.size())}), status = on_device(std::vector<uint>{0});
-        GatherPass gather(device, GatherVisibility::rays, width, height, bvh.constants(), gbuffer.glossy());
+        GatherPass gather(device, GatherVisibility::rays, width, height, bvh.constants(), {.glossy = gbuffer.glossy()});
         const GatherInputs in{gbuffer, on, count, block, 2};
         engine::Recorder recorder(device);
         gather.clear(recorder);

@@ -52,6 +52,7 @@ protected:
         float bias = 0;
         const std::vector<uint>* listed = nullptr;  // GatherInputs::listed
         bool omni = false;                       // the lights are omni_light()s
+        const std::vector<SharedMap>* asked = nullptr;  // GatherInputs::asked; all in one recording
         const std::vector<View>* far = nullptr;  // the lights are infinitely far, and these their views
     };
     // None, or maps when there is an atlas.
@@ -59,10 +60,12 @@ protected:
         const GBuffer gbuffer = host.on(device);
         const auto on = on_device(vpls);
         const auto count = on_device(std::vector<uint>{uint(vpls.size())});
-        GatherPass gather(device, o.atlas ? GatherVisibility::maps : GatherVisibility::none, host.width, host.height, {}, gbuffer.glossy(), o.far, o.listed, o.omni);
+        GatherPass gather(device, o.atlas ? GatherVisibility::maps : GatherVisibility::none, host.width, host.height, {},
+                          {.glossy = gbuffer.glossy(), .far = o.far != nullptr, .listed = o.listed != nullptr, .omni = o.omni, .asks = o.asked != nullptr});
         const auto views = on_device(o.far ? *o.far : std::vector<View>{view_of_nothing()});
         const auto listed = on_device(o.listed ? *o.listed : std::vector<uint>{0});
-        const GatherInputs in{gbuffer, on, count, o.block, o.bound, o.far ? &views : nullptr, o.listed ? &listed : nullptr};
+        const auto asked = on_device(o.asked ? *o.asked : std::vector<SharedMap>(1));
+        const GatherInputs in{gbuffer, on, count, o.block, o.bound, o.far ? &views : nullptr, o.listed ? &listed : nullptr, o.asked ? &asked : nullptr};
         const uint32_t all = uint32_t(vpls.size()) + o.beyond;
         std::vector<uint32_t> parts = o.parts;
         if (parts.empty()) parts = {all};

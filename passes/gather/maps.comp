@@ -7,14 +7,32 @@ layout(constant_id = 2) const bool use_maps = true;
 layout(constant_id = glossy_constant) const bool glossy = false;
 layout(constant_id = gather_omni_constant) const bool omni = false;
 layout(constant_id = gather_listed_constant) const bool listed = false;
+layout(constant_id = gather_asks_constant) const bool asks = false;
 layout(push_constant, scalar) uniform Push { GatherPush push; };
+
+float depth_in_both(MapQuery q, int right, int below, uint map, SharedMap above, uint index) {
+    const float own = uintBitsToFloat(push.atlas.at[map + index]);
+    if (above.first == fuse_no_map) return own;
+    const float far = uintBitsToFloat(push.atlas.at[above.first + index]);
+    return min(own, fused_depth(above.offset, map_texel_towards(q, right, below, gather_map_size_of(push.sides)), far));  // infinity stays what it is
+}
+float seen_in_both_texels(MapQuery q, int right, int below, uint map, SharedMap above) {
+    const MapTexel t = map_texel(q, right, below, gather_map_size_of(push.sides));
+    return map_seen(depth_in_both(q, right, below, map, above, t.index), t);
+}
+// As seen_in_map, where the map is not fused with what its view shares.
+float seen_in_both(vec3 x, vec3 n_g, vec3 vpl_position, uint map, SharedMap above) {
+    const MapQuery q = map_query(x, n_g, vpl_position, gather_map_size_of(push.sides), push.bias);
+    return map_blend(q, vec4(seen_in_both_texels(q, 0, 0, map, above), seen_in_both_texels(q, 1, 0, map, above),
+                             seen_in_both_texels(q, 0, 1, map, above), seen_in_both_texels(q, 1, 1, map, above)));
+}
 
 float seen_in_parallel_texel(ParallelQuery q, int right, int below, uint map) {
     const MapTexel t = parallel_map_texel(q, right, below);
     return map_seen(uintBitsToFloat(push.atlas.at[map + t.index]), t);
 }
 float seen_in_parallel_map(vec3 x, vec3 n_g, View view, uint map) {
-    const ParallelQuery q = parallel_query(x, n_g, view, push.map_size, push.bias);
+    const ParallelQuery q = parallel_query(x, n_g, view, gather_map_size_of(push.sides), push.bias);
     return parallel_blend(q, vec4(seen_in_parallel_texel(q, 0, 0, map), seen_in_parallel_texel(q, 1, 0, map),
                                   seen_in_parallel_texel(q, 0, 1, map), seen_in_parallel_texel(q, 1, 1, map)));
 }
@@ -32,9 +50,9 @@ uint first_listed(uint code, uint count) {
 
 void main() {
     const GatherPixel pixel = gather_pixel(workgroup_index(), gl_LocalInvocationIndex, gl_WorkGroupSize.x, push.gbuffer.width,
-                                           push.gbuffer.height, push.block);
+                                           push.gbuffer.height, gather_block_of(push.sides));
     if (!pixel.inside) return;
-    if (push.has_failed != 0u && push.failed.at[0] != 0u) return;
+    if (gather_may_fail(push.sides) && push.failed.at[0] != 0u) return;
     const uint p = pixel.y * push.gbuffer.width + pixel.x;
     const vec4 position = push.gbuffer.positions.at[p];
     if (position.w == 0.0f) return;
@@ -47,8 +65,9 @@ void main() {
     if (glossy) lobe = lobe_of(push.gbuffer.gloss.at[p], n);
     const uint pixels = push.gbuffer.width * push.gbuffer.height;
 
-    const uint sets = push.block * push.block;
-    const float scale = gather_scale(push.block);
+    const uint block = gather_block_of(push.sides);
+    const uint sets = block * block;
+    const float scale = gather_scale(block);
     const uint count = push.count.at[0];
     const uint end = min(push.first + push.limit, count);
     const uint base = pixel.set << gather_listed_bits;
@@ -67,10 +86,12 @@ void main() {
         else if (omni) t = omni_transfer(x, n, n_g, lobe, vpl);
         else t = transfer_of(x, n, lobe, vpl.position, unpack_direction(vpl.normal), push.bound);
         if (t.diffuse > 0.0f) {
-            const uint map = (i - push.first_map) * map_texels(push.map_size);
+            const uint place = i - push.first_map;
+            const uint map = place * map_texels(gather_map_size_of(push.sides));
             float seen = 1.0f;
             if (use_maps && parallel_views) seen = seen_in_parallel_map(x, n_g, push.views.at[i], map);
-            else if (use_maps) seen = seen_in_map(x, n_g, vpl.position, push.atlas, map, push.map_size, push.bias);
+            else if (use_maps && asks) seen = seen_in_both(x, n_g, vpl.position, map, push.asked.at[place]);
+            else if (use_maps) seen = seen_in_map(x, n_g, vpl.position, push.atlas, map, gather_map_size_of(push.sides), push.bias);
             sum += vpl.flux * (t.diffuse * seen * scale);
             if (glossy) mirrored += vpl.flux * (t.glossy * seen * scale) * brdf_fresnel(lobe.f0, t.power);
         }

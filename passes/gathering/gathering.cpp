@@ -22,6 +22,7 @@ bool picks(const GatheringSettings& s) { return s.method != GatherMethod::subset
 GatheringSettings checked(GatheringSettings s) {
     if (s.method != GatherMethod::subset && !picks(s)) s.method = GatherMethod::subset, s.subset = 0;
     s.maps.parallel = s.far;
+    s.maps.asks = s.maps.asks && own_order(s) && !picks(s);
     if (s.method == GatherMethod::subset) return s;
     if (s.lights > compute::ViewTree::most_views)
         throw InputError("a gather that picks from a tree takes up to " + std::to_string(compute::ViewTree::most_views) + " VPLs, and " +
@@ -44,7 +45,7 @@ Gathering::Gathering(engine::Device& device, const GatheringSettings& settings, 
                       PickSettings{.method = s.method == GatherMethod::culled ? PickMethod::culled : PickMethod::tree, .visibility = s.visibility, .width = s.width,
                                    .height = s.height, .vpls = s.lights, .picks = s.subset, .block = block_, .seed = s.seed, .glossy = s.glossy, .reach = s.distance},
                       variant);
-    else gather_.emplace(device, s.visibility, s.width, s.height, variant, s.glossy, s.far, reorders, s.omni);
+    else gather_.emplace(device, s.visibility, s.width, s.height, variant, GatherKind{.glossy = s.glossy, .far = s.far, .listed = reorders, .omni = s.omni, .asks = s.maps.asks});
     if (picks(s) && !own_order(s)) views_.emplace(device, s.lights);
     if (s.filter && block_ > 1) filter_.emplace(device, s.width, s.height, s.glossy);
     if (maps) maps_.emplace(device, s.maps, s.lights, picks(s) ? 1 : block_ * block_, world, ism);
@@ -74,7 +75,8 @@ void Gathering::record(engine::Recorder& recorder, const GatheringInputs& in, fl
         return filter(recorder, in, pixel_angle);
     }
     const GatherInputs given{in.gbuffer, in.lights, in.count, block_, in.bound, settings_.far ? &in.views : nullptr};
-    const GatherInputs reordered{in.gbuffer, reordering_ ? reordering_->lights : in.lights, in.count, block_, in.bound, nullptr, maps_ ? reorder(recorder, in) : nullptr};
+    const GatherInputs reordered{in.gbuffer, reordering_ ? reordering_->lights : in.lights, in.count, block_, in.bound, nullptr, maps_ ? reorder(recorder, in) : nullptr,
+                                 maps_ ? maps_->asked() : nullptr};
     const GatherInputs& gather = reordering_ ? reordered : given;
     gather_->clear(recorder);
     for (uint32_t first = 0; first < settings_.lights;) {

@@ -39,13 +39,14 @@ void MapCounters::add_steps(const std::vector<compute::PairReport::Step>& steps)
 ViewMaps::ViewMaps(engine::Device& device, const MapSettings& settings, uint32_t max_views, uint32_t multiple, const compute::WorldTriangles* world,
                    const IsmScene* ism)
     : device_(device), settings_(settings), batch_(round_up(std::max(max_views, 1u), multiple)), multiple_(multiple) {
+    assert(!settings.asks || settings.method == MapMethod::megaviews);
     assert(!settings.parallel || settings.method == MapMethod::manylods);
     assert(!settings.octree || settings.method == MapMethod::megaviews);
     SplatPass::check_map_size(device, settings.map_size);
     // Before the atlas, which takes its share of what memory they leave.
     if (settings.method == MapMethod::brute) brute_.emplace(device, *world);
     if (settings.method == MapMethod::ism) ism_.emplace(device, *ism, settings.ism, settings.seed);
-    if (settings.method == MapMethod::megaviews) shared_.emplace(device, std::max(max_views, 1u), kind_of(settings));
+    if (settings.method == MapMethod::megaviews) shared_.emplace(device, std::max(max_views, 1u), kind_of(settings), settings.asks);
     while (batch_ > multiple_ && !is_handy(batch_)) halve();
     make_atlas();
     if (!has_lists()) return;

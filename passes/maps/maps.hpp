@@ -36,6 +36,7 @@ struct MapSettings {
     float epsilon = 2;        // texels
     MapMethod method = MapMethod::manylods;
     uint32_t shared_maps = 0; // megaviews: room for maps that views share, to begin with; 0: half as many as views, and 64
+    bool asks = false;        // megaviews: views get no whole maps, look-ups ask what is shared as well (asked())
     IsmSettings ism;
     uint32_t seed = 1;        // ism
     CutUpdate update = CutUpdate::basic;
@@ -99,6 +100,7 @@ public:
 
     const SharedMaps* shared() const { return shared_ ? &*shared_ : nullptr; }  // megaviews
     const engine::Array<uint>& atlas() const { return atlas_; }
+    const engine::Array<SharedMap>* asked() const { return settings_.asks ? &shared_->asked() : nullptr; }  // by map
     const compute::AppendLists* lists() const { return lists_ ? &*lists_ : carried_now_ ? &carried_now_->lists() : nullptr; }  // null: the method has none, nothing overflows
     // For a tree that was built anew: cuts of the old one are forgotten.
     void forget() {

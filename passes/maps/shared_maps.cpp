@@ -18,15 +18,15 @@ engine::Constants sharing(engine::Constants constants) {
 
 }  // namespace
 
-SharedMaps::SharedMaps(engine::Device& device, uint32_t max_views, const engine::Constants& constants)
-    : tree_(device, checked(max_views)), megaviews_(device, constants), splat_(device, sharing(constants)), fuse_(device, tree_) {}
+SharedMaps::SharedMaps(engine::Device& device, uint32_t max_views, const engine::Constants& constants, bool asks)
+    : tree_(device, checked(max_views)), megaviews_(device, constants), splat_(device, sharing(constants)), fuse_(device, tree_, asks) {}
 
 void SharedMaps::record(engine::Recorder& recorder, compute::AppendLists& lists, const compute::SceneTree& scene, const engine::Array<uint>& count, uint32_t first,
                         uint32_t limit, float epsilon, uint32_t map_size, const engine::Array<uint>& atlas, uint32_t maps) {
     {
         auto scope = recorder.scope("pairs");
         megaviews_.record(recorder, lists, {scene, tree_, first, limit, epsilon, map_size});
-        fuse_.place(recorder, lists, tree_, limit, maps);
+        fuse_.place(recorder, lists, tree_, first, limit, maps);
     }
     {
         auto scope = recorder.scope("splat");

@@ -9,8 +9,8 @@ namespace myriad::passes {
 
 class SharedMaps {
 public:
-    // Throws InputError for more views than a view tree holds.
-    SharedMaps(engine::Device& device, uint32_t max_views, const engine::Constants& constants);
+    // Throws InputError for more views than a view tree holds. `asks`: as FusePass.
+    SharedMaps(engine::Device& device, uint32_t max_views, const engine::Constants& constants, bool asks = false);
 
     // Once a frame: sorts the views, and builds their tree.
     void begin(engine::Recorder& recorder, const engine::Array<View>& views, const engine::Array<uint>& count, const vec3& low, const vec3& high) {
@@ -24,6 +24,8 @@ public:
     // are rendered are in lists.kept().
     void record(engine::Recorder& recorder, compute::AppendLists& lists, const compute::SceneTree& scene, const engine::Array<uint>& count, uint32_t first, uint32_t limit,
                 float epsilon, uint32_t map_size, const engine::Array<uint>& atlas, uint32_t maps);
+
+    const engine::Array<SharedMap>& asked() const { return fuse_.shared_maps(); }  // where it asks
 
     // After the submission.
     compute::PairReport pairs() const { return megaviews_.report(); }

@@ -120,7 +120,7 @@ private:
         for (uint i = 0; i < order.size(); ++i) listed.push_back(order[i] % sets << gather_listed_bits | i);
         std::ranges::sort(listed);
         g->listed = engine::upload(device_, "vpls", "lights by set", listed);
-        g->gather.emplace(device_, passes::GatherVisibility::maps, width, height, engine::Constants{}, false, false, true);
+        g->gather.emplace(device_, passes::GatherVisibility::maps, width, height, engine::Constants{}, passes::GatherKind{.listed = true});
         return g;
     }
     std::unique_ptr<Gatherer> picked(const char* technique, uint32_t vpls, uint32_t k) {
