@@ -105,7 +105,26 @@ TEST_F(command_line, bench_megaviews_views) {
     EXPECT_TRUE(contains(bytes_of(folder / "v.svg"), "stroke-dasharray"));
 }
 
-// For each arity what its tree takes, and its cuts.
+TEST_F(command_line, bench_megaviews_resolution) {
+    refuse(2, {"bench", "megaviews-views", "--map-sizes", "4"}, "--map-sizes is an option of bench megaviews-resolution");
+    refuse(2, {"bench", "megaviews-resolution", "--images", folder / "none"}, "there is no such folder");
+    succeed({"bench", "megaviews-resolution", "--scene", "builtin:cornell", "--views", "100", "--samples", "9", "--map-sizes", "4,8", "--levels", "3,5", "--repeat", "2", "--json",
+             folder / "rows.json", "--images", folder / ""});
+    std::map<std::string, std::vector<int>> sizes;
+    std::vector<int> levels;
+    for (const auto& row : rows_of(folder / "rows.json")) {
+        EXPECT_EQ(row["bench"], "megaviews-resolution");
+        EXPECT_EQ(row["ms"]["n"], 2);
+        EXPECT_GT(row["error"]["SSIM"], 0);
+        EXPECT_GT(row["error"]["PSNR"], 0);
+        if (row["settings"].contains("levels")) levels.push_back(row["settings"]["levels"]);
+        else sizes[row["technique"]].push_back(row["settings"]["map_size"]);
+    }
+    EXPECT_EQ(sizes, (std::map<std::string, std::vector<int>>{{"manylods", {4, 8}}, {"megaviews", {4, 8}}}));
+    EXPECT_EQ(levels, (std::vector<int>{3, 5}));
+    EXPECT_TRUE(std::filesystem::exists(folder / "megaviews-100-16-svo5.png"));
+}
+
 TEST_F(command_line, bench_gather) {
     refuse(2, {"bench", "manylods", "--picks", "4"}, "--picks is an option of bench gather");
     refuse(2, {"bench", "gather", "--picks", "0"}, "--picks");
@@ -125,6 +144,7 @@ TEST_F(command_line, bench_gather) {
     EXPECT_EQ(rows, (std::map<std::string, int>{{"all", 1}, {"subset", 2}, {"culled", 2}, {"tree", 2}}));
 }
 
+// For each arity what its tree takes, and its cuts.
 TEST_F(command_line, bench_arity) {
     refuse(2, {"bench", "manylods-arity", "--arity", "4"}, "--arity is an option of bench manylods");
     succeed({"bench", "manylods-arity", "--scene", "builtin:cornell?light=point", "--views", "4", "--samples", "7", "--map-size", "4", "--repeat", "2",

@@ -175,7 +175,11 @@ TEST_F(command_line, arities) {
 TEST_F(command_line, megaviews) {
     refuse(2, tiny + Arguments{"-o", exr, "--visibility", "megaviews", "--update", "incremental"}, "--update incremental carries the cuts of manylods");
     refuse(2, {"render", "builtin:cornell", "-o", exr, "--size", "64x48", "--samples", "12", "--visibility", "megaviews", "--vpls", "2000000"}, "megaviews takes up to 1048576 views");
+    refuse(2, tiny + Arguments{"-o", exr, "--fusion", "queries"}, "--fusion queries is about maps that views share");
+    refuse(2, tiny + Arguments{"-o", exr, "--visibility", "megaviews", "--gather", "tree:8", "--fusion", "queries"}, "--fusion queries");
     const std::string stats = folder / "s.json";
+    succeed(tiny + Arguments{"-o", exr, "-q", "--stats", stats, "--visibility", "megaviews", "--fusion", "queries"});
+    EXPECT_EQ(nlohmann::json::parse(bytes_of(stats))["settings"]["fusion"], "queries");
     succeed(tiny + Arguments{"-o", exr, "-q", "--stats", stats, "--visibility", "megaviews"});
     const auto json = nlohmann::json::parse(bytes_of(stats)), counters = json["frames"][0]["counters"];
     EXPECT_EQ(json["settings"]["visibility"], "megaviews");

@@ -54,6 +54,7 @@ struct BenchOptions {
     uint32_t depth = 10;            // of an octree
     uint32_t bounces = 1;           // of light
     std::vector<uint32_t> picks;    // VPLs that a pixel gathers; empty: the experiment's own
+    std::vector<uint32_t> map_sizes, levels; // of maps' sides; of the scene's octree; empty: the experiment's own
     std::vector<std::string> distributions;  // of views; empty: all that the experiment has
     uint32_t measured = 65536;      // views: beyond that what draws each view for itself is extrapolated
     std::string csv, plot, images;  // empty: not written
@@ -86,6 +87,8 @@ void bench_arity(engine::Device& device, const BenchOptions& options, const RowS
 void bench_equal_time(engine::Device& device, const BenchOptions& options, const RowSink& sink);
 // bench/megaviews.cpp
 void bench_megaviews(engine::Device& device, const BenchOptions& options, const RowSink& sink);
+// bench/resolution.cpp
+void bench_resolution(engine::Device& device, const BenchOptions& options, const RowSink& sink);
 // bench/gather.cpp
 void bench_gather(engine::Device& device, const BenchOptions& options, const RowSink& sink);
 // bench/octree.cpp

@@ -59,8 +59,8 @@ BenchRow maps_row(const char* bench, const std::string& source, const char* tech
     if (settings.visibility != Visibility::rays && settings.visibility != Visibility::none) row.settings["map_size"] = settings.maps.map_size;
     if (settings.visibility == Visibility::manylods || settings.visibility == Visibility::megaviews) {
         row.settings["epsilon"] = settings.maps.epsilon;
-        row.settings["samples"] = uint64_t(1) << settings.log2_samples;
-        row.settings["arity"] = settings.maps.arity;
+        if (settings.octree_levels) row.settings["levels"] = settings.octree_levels;
+        else row.settings["samples"] = uint64_t(1) << settings.log2_samples, row.settings["arity"] = settings.maps.arity;
         if (settings.maps.update == CutUpdate::incremental) row.settings["revalidate"] = settings.maps.revalidate ? "all" : "due";
         if (settings.maps.update == CutUpdate::lazy) row.settings["q"] = settings.maps.lazy_edges;
     }
