@@ -53,6 +53,8 @@ enum class PointLighting {
     direct,     // a shadow ray a pixel and light
     gather,     // as VPLs' light is: by `visibility`, `gather` and `filter`
 };
+// Measured (the atrium, 640 x 360, Mesa's CPU device): 75 ms a light by rays and 3.2 by its map, so rays never win in time; but what few lights show is each map's
+// texels: relMSE 0.41 with 8 lights, 0.12 with 32, 0.08 with 128. 32 still take rays a few seconds.
 inline constexpr uint32_t most_direct_points = 32;
 
 struct FrameSettings {
