@@ -118,6 +118,13 @@ TEST_F(ParticlesFrameTest, maps_are_near_to_rays) {
         EXPECT_LT(error, (v == Visibility::ism ? 0.9 : 0.5) * hidden) << int(v);  // few points, and holes
         EXPECT_TRUE(same(maps.beauty, render(kit.scene, s).beauty)) << int(v);
         for (const vec4& p : maps.beauty) ASSERT_TRUE(std::isfinite(p.x) && p.x >= 0);
+        if (v != Visibility::megaviews) continue;
+        s.maps.asks = true;  // shared maps as they are
+        EXPECT_LT(difference(render(kit.scene, s).direct, rays.direct), 0.05);
+        s.maps.asks = false, s.octree_levels = 7;
+        const double by_octree = difference(render(kit.scene, s).direct, rays.direct);
+        std::printf("the scene's octree: %.4f\n", by_octree);
+        EXPECT_LT(by_octree, 0.05);
     }
 }
 
