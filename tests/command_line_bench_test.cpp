@@ -75,6 +75,10 @@ TEST_F(command_line, bench_figure_8) {
 TEST_F(command_line, bench_megaviews_views) {
     refuse(2, {"bench", "manylods", "--distributions", "random"}, "--distributions is an option of bench megaviews-views");
     refuse(2, {"bench", "megaviews-views", "--scene", "builtin:cornell", "--views", "4", "--distributions", "even"}, "--distributions");
+    refuse(2, {"bench", "megaviews-views", "--scene", "builtin:cornell", "--levels", "4,5"}, "give one number of levels");
+    succeed({"bench", "megaviews-views", "--scene", "builtin:cornell", "--views", "16", "--distributions", "random", "--samples", "9", "--map-size", "4", "--repeat", "1", "--levels", "4",
+             "--json", folder / "octree.jsonl"});
+    for (const auto& row : rows_of(folder / "octree.jsonl")) EXPECT_EQ(row["settings"].contains("levels"), row["technique"] == "megaviews") << row;
     succeed({"bench", "megaviews-views", "--scene", "builtin:cornell", "--views", "64,16", "--measured", "16", "--samples", "9", "--map-size", "4", "--repeat", "2",
              "--json", folder / "rows.json", "--csv", folder / "v.csv", "--plot", folder / "v.svg"});
     Arguments which;

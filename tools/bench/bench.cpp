@@ -43,7 +43,7 @@ const std::vector<Bench>& benches() {
         {"manylods-ism", "imperfect shadow maps with the points a map that take ManyLoDs' time, diffuse and glossy", bench_equal_time, {"--images", "--arity"}},
         {"manylods-arity", "trees of arity 2, 4 and 8: what they take, to refit and to be cut, from the roots and from the frame before", bench_arity},
         {"megaviews-views", "maps of up to a million views: drawn for many at once, against ManyLoDs and all triangles", bench_megaviews,
-         {"--csv", "--plot", "--arity", "--distributions", "--measured"}, 16, 2.0f},
+         {"--csv", "--plot", "--arity", "--distributions", "--measured", "--levels"}, 16, 2.0f},
         {"megaviews-resolution", "maps of 16 to 256 texels a side, and octrees of 8 to 11 levels: what they take, and the image's error", bench_resolution,
          {"--arity", "--map-sizes", "--levels", "--images"}, 16, 2.0f},
         {"gather", "what pixels gather of many VPLs: all, subsets, some that are not culled, and what a light tree picks, with their errors", bench_gather,
@@ -134,7 +134,7 @@ void add_bench(CLI::App& app) {
     bench->add_option("--measured", o.measured, "megaviews-views: the most views that ManyLoDs draws; more are extrapolated (65536)")->check(CLI::Range(1u, 1u << 20));
     bench->add_option("--plot", o.plot, "manylods-fig8: draw the cuts' times over the frames, as SVG; megaviews-views: the maps' over views");
     bench->add_option("--map-sizes", o.map_sizes, "megaviews-resolution: texels a side, separated by commas (16,32,64,128,256)")->delimiter(',')->check(CLI::Range(2u, 1024u));
-    bench->add_option("--levels", o.levels, "megaviews-resolution: of the scene's octree, separated by commas (8,9,10,11)")->delimiter(',')->check(CLI::Range(1u, 12u));
+    bench->add_option("--levels", o.levels, "of the scene's octree. megaviews-resolution: separated by commas (8,9,10,11); megaviews-views: one, of what MegaViews draws in place of samples")->delimiter(',')->check(CLI::Range(1u, 12u));
     bench->add_option("--images", o.images, "manylods-ism, megaviews-resolution: a folder for the images that are compared, as EXR and PNG");
     bench->add_option("--device", arguments->device, "part of a device's name, or its index");
     bench->callback([arguments, bench] { run(*arguments, *bench); });

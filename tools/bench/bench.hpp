@@ -54,7 +54,7 @@ struct BenchOptions {
     uint32_t depth = 10;            // of an octree
     uint32_t bounces = 1;           // of light
     std::vector<uint32_t> picks;    // VPLs that a pixel gathers; empty: the experiment's own
-    std::vector<uint32_t> map_sizes, levels; // of maps' sides; of the scene's octree; empty: the experiment's own
+    std::vector<uint32_t> map_sizes, levels; // of maps' sides; of the scene's octree; empty: the experiment's own (megaviews-views: no octree)
     std::vector<std::string> distributions;  // of views; empty: all that the experiment has
     uint32_t measured = 65536;      // views: beyond that what draws each view for itself is extrapolated
     std::string csv, plot, images;  // empty: not written

@@ -95,6 +95,10 @@ public:
         tree_.refit(recorder, geometry_.positions(), geometry_.triangles(), geometry_.instances(), geometry_.opacity());
         gbuffer_.record(recorder, geometry_, bvh_, setting.camera);
         recorder.submit_and_wait();
+        if (options.levels.empty()) return;
+        octree_.emplace(device, derived_.world(), options.levels[0], setting.triangles.lo, setting.triangles.hi);
+        octree_->build(recorder, geometry_.positions(), geometry_.triangles(), geometry_.instances(), geometry_.opacity());
+        octree_->settle();
     }
 
     void run(const Distribution& distribution, const std::vector<uint32_t>& counts) {
@@ -191,9 +195,10 @@ private:
     }
 
     passes::MapSettings settings(MapMethod method) const {
-        return {.map_size = options_.map_size, .epsilon = options_.epsilon, .method = method, .arity = options_.arity};
+        return {.map_size = options_.map_size, .epsilon = options_.epsilon, .method = method, .arity = options_.arity, .octree = draws_octree(method)};
     }
-    passes::MapScene map_scene() const { return {.tree = &tree_, .low = setting_.triangles.lo, .high = setting_.triangles.hi, .geometry = &geometry_}; }
+    bool draws_octree(MapMethod method) const { return octree_ && method == MapMethod::megaviews; }
+    passes::MapScene map_scene() const { return {.tree = &tree_, .octree = octree_ ? &*octree_ : nullptr, .low = setting_.triangles.lo, .high = setting_.triangles.hi, .geometry = &geometry_}; }
 
     // Until no list is too short, and then so often as is measured.
     BenchRow measure_maps(const Technique& technique, const Distribution& distribution, const Lights& lights, uint32_t count) {
@@ -204,8 +209,9 @@ private:
         row.views = count;
         row.settings = {{"distribution", distribution.name}, {"map_size", options_.map_size}};
         if (distribution.bounces > 0) row.settings["bounces"] = distribution.bounces;
-        if (technique.method != MapMethod::brute)
-            row.settings["epsilon"] = options_.epsilon, row.settings["samples"] = tree_.leaves(), row.settings["arity"] = tree_.arity();
+        if (technique.method != MapMethod::brute) row.settings["epsilon"] = options_.epsilon;
+        if (draws_octree(technique.method)) row.settings["levels"] = octree_->depth();
+        else if (technique.method != MapMethod::brute) row.settings["samples"] = tree_.leaves(), row.settings["arity"] = tree_.arity();
         device_.reset_memory_peaks();
         passes::ViewMaps maps(device_, settings(technique.method), count, 1, &derived_.world());
         engine::Recorder recorder(device_);
@@ -325,6 +331,7 @@ private:
     compute::Derived derived_;
     compute::Bvh bvh_;
     compute::Bsh tree_;
+    std::optional<compute::Svo> octree_;  // that MegaViews draws in its place
     passes::GBufferPass gbuffer_;
     std::vector<BenchRow> table_rows_;
     std::vector<Plot::Line> lines_;
@@ -344,6 +351,7 @@ void bench_megaviews(engine::Device& device, const BenchOptions& options, const 
         if (!file.empty()) require_writable(file);
     std::vector<uint32_t> counts = options.views.empty() ? std::vector<uint32_t>{1024, 4096, 16384, 65536} : options.views;
     std::ranges::sort(counts);
+    if (options.levels.size() > 1) throw InputError("--levels: megaviews-views draws one octree; give one number of levels");
     const Setting setting(options);
     std::printf("scene: %s, %zu triangles, 2^%u samples, maps 2 x %u^2, epsilon %g\n", setting.source.c_str(), size_t(setting.data.world.count()),
                 options.log2_samples, options.map_size, options.epsilon);
