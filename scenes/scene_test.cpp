@@ -279,8 +279,8 @@ TEST(Cameras, PickByNameIndexOrDefault) {
 
 TEST(Load, NamesWhatExists) {
     const auto message = [](const char* source) { return message_of([&] { load(source); }); };
-    EXPECT_NE(message("builtin:nothing").find("atrium, cathedral, cornell, hairball, teatime"), std::string::npos);
-    EXPECT_NE(message("builtin:").find("atrium, cathedral, cornell, hairball, teatime"), std::string::npos);
+    EXPECT_NE(message("builtin:nothing").find("atrium, cathedral, cornell, hairball, particles, teatime"), std::string::npos);
+    EXPECT_NE(message("builtin:").find("atrium, cathedral, cornell, hairball, particles, teatime"), std::string::npos);
     EXPECT_NE(message("builtin:cornell?colour=1").find("known: light, cells"), std::string::npos);
     EXPECT_NE(message("builtin:cornell?light=sun").find("panel, point"), std::string::npos);
     EXPECT_NE(message("builtin:cornell?cells=8x").find("1 to 256"), std::string::npos);
@@ -288,7 +288,7 @@ TEST(Load, NamesWhatExists) {
     EXPECT_NE(message("builtin:cornell?cells").find("1 to 256"), std::string::npos);
     EXPECT_NE(message("builtin:cornell?").find("(no InputError)"), std::string::npos);
     EXPECT_NE(message("/no/such/file.glb").find("/no/such/file.glb"), std::string::npos);
-    EXPECT_EQ(builtin_names().size(), 5u);
+    EXPECT_EQ(builtin_names().size(), 6u);
 }
 
 }  // namespace
