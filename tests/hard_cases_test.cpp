@@ -294,7 +294,7 @@ TEST_F(HardCases, shared_maps_leave_each_pixel_its_set) {
     EXPECT_LT(apart(shared, asked), 1e-4) << "the same depths, wherever they are looked up";  // on lavapipe the same bits
 }
 
-// Against exact rays the octree's maps are as good as those of samples: measured, 7 levels against 2^14 samples, 0.8 to 1.0 times their error.
+// Against exact rays the octree's maps are as good as those of samples: measured, 7 levels against 2^14 samples, 0.75 to 0.78 times their error.
 TEST_F(HardCases, an_octree_is_as_good_as_samples) {
     for (const Kit& kit : {Kit::room(), Kit::room(1e-6f), Kit::room(1e6f), Kit::room(1, {1e3f, -1e3f, 1e3f})}) {
         FrameSettings settings = small(Visibility::rays);
