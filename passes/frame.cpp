@@ -35,7 +35,8 @@ MapMethod map_method(Visibility v, bool far) {
 bool gathers_points(const scenes::Scene& scene, const scenes::Triangles& triangles, const FrameSettings& settings) {
     const auto points = std::ranges::count(scene.lights, scenes::Light::Type::point, &scenes::Light::type);
     if (points == 0 || triangles.triangles.empty() || settings.point_lights == PointLighting::direct) return false;
-    return settings.point_lights == PointLighting::gather || points > most_direct_points;
+    if (settings.point_lights == PointLighting::gather) return true;
+    return points > most_direct_points && settings.visibility != Visibility::none;  // which would leave their shadows out
 }
 
 MapSettings map_settings(const FrameSettings& settings, bool far) {
@@ -72,7 +73,7 @@ Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::T
     : device_(device), settings_(settings), recorder_(device), geometry_(step("uploading triangles", [&] { return Geometry(device, triangles, data); })),
       lights_(step("listing lights", [&] { return LightTable(device, scene, triangles, data, gathers_points(scene, triangles, settings)); })),
       bvh_(step("building the ray tree", [&] { return derived.bvh(device, compute::BvhQuality::quick, geometry_.opacity()); })),
-      gbuffer_(device, settings.width, settings.height, bvh_.constants(), settings.brdf == Brdf::gltf && data.glossy, settings.primary == Primary::rays), compose_(device, settings.width, settings.height, gathers_points(scene, triangles, settings)),
+      gbuffer_(device, settings.width, settings.height, bvh_.constants(), settings.brdf == Brdf::gltf && data.glossy, settings.primary == Primary::rays), compose_(device, settings.width, settings.height, !lights_.points_apart().empty()),
       exhausted_(device, "frame", "exhausted walks", 1), host_words_(device, "frame", "frame words", 7, engine::Location::host) {
     background_ = scene.background;
     const compute::WorldTriangles& world = derived.world();

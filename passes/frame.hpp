@@ -49,7 +49,7 @@ enum class Brdf {
 
 // How the light of punctual point lights comes to what the camera sees.
 enum class PointLighting {
-    automatic,  // gathered where there are more than most_direct_points
+    automatic,  // gathered where there are more than most_direct_points, and visibility is asked for
     direct,     // a shadow ray a pixel and light
     gather,     // as VPLs' light is: by `visibility`, `gather` and `filter`
 };

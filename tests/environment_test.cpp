@@ -1,6 +1,5 @@
 // Whole frames under an environment: a sky of known radiance, the integral over a picture, maps against rays.
 #include <cmath>
-#include <cstring>
 #include <functional>
 #include <numbers>
 
@@ -10,11 +9,13 @@
 #include "passes/frame.hpp"
 #include "passes/geometry/geometry_ref.hpp"
 #include "scenes/moment.hpp"
+#include "tests/frame_testing.hpp"
 #include "tests/scene_kit.hpp"
 
 namespace myriad::tests {
 namespace {
 
+using engine::same;
 using glm::dvec3;
 using passes::Visibility;
 
@@ -55,16 +56,6 @@ protected:
         kit.quad(0, {1, 0, -1}, {0, 0, 2}, {0, 1.4f, 0});
         kit.look({-1.5f, 2, 3}, {0, 0.3f, 0});
         return kit;
-    }
-    template <class T>
-    static bool same(const std::vector<T>& a, const std::vector<T>& b) { return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0; }
-    static double difference(const std::vector<vec4>& a, const std::vector<vec4>& b) {
-        double sum = 0, whole = 0;
-        for (size_t i = 0; i < a.size(); ++i) {
-            const dvec3 d = dvec3(a[i]) - dvec3(b[i]), r(b[i]);
-            sum += glm::dot(d, d), whole += glm::dot(r, r);
-        }
-        return std::sqrt(sum / whole);
     }
 };
 

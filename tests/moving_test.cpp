@@ -1,5 +1,4 @@
 // Whole frames of scenes that move: at a moment they are those of a scene that was made so.
-#include <cstring>
 
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -8,10 +7,12 @@
 #include "engine/transfer.hpp"
 #include "passes/frame.hpp"
 #include "scenes/moment.hpp"
+#include "tests/frame_testing.hpp"
 
 namespace myriad::tests {
 namespace {
 
+using engine::same;
 using glm::vec3;
 using passes::Visibility;
 
@@ -76,16 +77,14 @@ protected:
         s.width = 96, s.height = 72, s.vpls = 256, s.subset = 0, s.bounces = 2, s.visibility = visibility, s.log2_samples = 13;
         return s;
     }
-    template <class T>
-    static bool same(const std::vector<T>& a, const std::vector<T>& b) { return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0; }
     std::vector<vec4> image(const passes::Frame& frame) { return engine::download(device, frame.beauty()); }
-    static double difference(const std::vector<vec4>& a, const std::vector<vec4>& b) {
-        double sum = 0, whole = 0;
-        for (size_t i = 0; i < a.size(); ++i) {
-            const glm::dvec3 d = glm::dvec3(a[i]) - glm::dvec3(b[i]), r(b[i]);
-            sum += glm::dot(d, d), whole += glm::dot(r, r);
-        }
-        return std::sqrt(sum / whole);
+    // Of a scene that was made so.
+    std::vector<vec4> image_made_at(const scenes::Moment& moment, scenes::Scene scene, scenes::Triangles triangles, const passes::FrameSettings& s) {
+        scenes::deform(triangles, moment);
+        scene.lights = moment.lights;
+        passes::Frame made(device, scene, triangles, s);
+        made.render(scene.cameras[0]);
+        return image(made);
     }
 };
 
@@ -140,11 +139,7 @@ TEST_F(MovingTest, with_maps_it_is_nearly_so) {
         const compute::Bsh& tree = *frame.tree();
         EXPECT_EQ(compute::bsh_check(compute::bsh_download(device, tree),
                                      {engine::download(device, tree.samples()), then.positions, then.triangles, tree.sample_radius(), tree.sample_share()}), "");
-        scenes::Scene lit = scene;
-        lit.lights = moment.lights;
-        passes::Frame made(device, lit, then, s);
-        made.render(scene.cameras[0]);
-        EXPECT_LT(difference(moved, image(made)), 0.08) << seconds;
+        EXPECT_LT(difference(moved, image_made_at(moment, scene, triangles, s)), 0.08) << seconds;
         if (seconds == 0) EXPECT_LT(difference(moved, start), 1e-5);
         else EXPECT_GT(difference(moved, start), 0.15) << "not a test";
     }
@@ -167,13 +162,7 @@ TEST_F(MovingTest, an_octree_follows) {
         EXPECT_EQ(frame.size().octree.pairs == pairs, seconds == 0);
         EXPECT_EQ(std::ranges::count(frame.times(), "octree contents", &engine::PassTime::name), 1);
         const auto moved = image(frame);
-        scenes::Triangles then = triangles;
-        scenes::deform(then, moment);
-        scenes::Scene lit = scene;
-        lit.lights = moment.lights;
-        passes::Frame made(device, lit, then, s);
-        made.render(scene.cameras[0]);
-        EXPECT_LT(difference(moved, image(made)), 0.08) << seconds;
+        EXPECT_LT(difference(moved, image_made_at(moment, scene, triangles, s)), 0.08) << seconds;
         if (seconds == 0) EXPECT_LT(difference(moved, start), 1e-5);
         else EXPECT_GT(difference(moved, start), 0.1) << "not a test";
         frame.render(scene.cameras[0]);

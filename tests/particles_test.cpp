@@ -1,16 +1,17 @@
 // Whole frames that many point lights light: by maps, by gathered rays and by a ray a light; where they move, and where memory is short.
 #include <cmath>
-#include <cstring>
 #include <numbers>
 
 #include "engine/testing.hpp"
 #include "passes/frame.hpp"
 #include "scenes/moment.hpp"
+#include "tests/frame_testing.hpp"
 #include "tests/scene_kit.hpp"
 
 namespace myriad::tests {
 namespace {
 
+using engine::same;
 using glm::dvec3;
 using passes::PointLighting, passes::Visibility;
 
@@ -49,16 +50,6 @@ protected:
         }
         return kit;
     }
-    template <class T>
-    static bool same(const std::vector<T>& a, const std::vector<T>& b) { return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0; }
-    static double difference(const std::vector<vec4>& a, const std::vector<vec4>& b) {
-        double sum = 0, whole = 0;
-        for (size_t i = 0; i < a.size(); ++i) {
-            const dvec3 d = dvec3(a[i]) - dvec3(b[i]), r(b[i]);
-            sum += glm::dot(d, d), whole += glm::dot(r, r);
-        }
-        return std::sqrt(sum / whole);
-    }
 };
 
 // Each pixel's sum is the same whoever sums it up; without a radius nothing bounds it differently, and no ball is seen.
@@ -81,8 +72,10 @@ TEST_F(ParticlesFrameTest, gathered_rays_are_the_rays_of_direct_light) {
 TEST_F(ParticlesFrameTest, few_lights_are_not_gathered_unless_asked_for) {
     for (size_t lights : {size_t(1), size_t(passes::most_direct_points), size_t(passes::most_direct_points) + 1}) {
         const Kit kit = room(lights);
-        passes::FrameSettings s = settings(Visibility::none);
+        passes::FrameSettings s = settings(Visibility::rays);
         EXPECT_EQ(render(kit.scene, s).gathered, lights > passes::most_direct_points) << lights;
+        s.visibility = Visibility::none;
+        EXPECT_FALSE(render(kit.scene, s).gathered) << "shadows are not left out unasked";
         s.point_lights = PointLighting::gather;
         EXPECT_TRUE(render(kit.scene, s).gathered);
     }
@@ -107,7 +100,9 @@ TEST_F(ParticlesFrameTest, few_lights_are_not_gathered_unless_asked_for) {
 // All ways of drawing maps: what is left is their resolution, which is finer with larger maps. VPLs of the same lights are beside the point.
 TEST_F(ParticlesFrameTest, maps_are_near_to_rays) {
     const Kit kit = room(300);
-    const Result rays = render(kit.scene, settings(Visibility::rays)), none = render(kit.scene, settings(Visibility::none));
+    passes::FrameSettings unshadowed = settings(Visibility::none);
+    unshadowed.point_lights = PointLighting::gather;
+    const Result rays = render(kit.scene, settings(Visibility::rays)), none = render(kit.scene, unshadowed);
     const double hidden = difference(none.direct, rays.direct);
     for (Visibility v : {Visibility::manylods, Visibility::megaviews, Visibility::brute, Visibility::ism}) {
         passes::FrameSettings s = settings(v);

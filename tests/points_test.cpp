@@ -1,15 +1,16 @@
 // Whole frames whose camera sees points in place of rays.
 #include <cmath>
-#include <cstring>
 
 #include "engine/testing.hpp"
 #include "passes/frame.hpp"
 #include "scenes/moment.hpp"
+#include "tests/frame_testing.hpp"
 #include "tests/scene_kit.hpp"
 
 namespace myriad::tests {
 namespace {
 
+using engine::same;
 using passes::Primary, passes::Visibility;
 
 class PointsFrameTest : public engine::DeviceTest {
@@ -35,8 +36,6 @@ protected:
         passes::Frame frame(device, copy, triangles, s);
         return take(frame, scenes::pick_camera(copy, triangles, ""));
     }
-    template <class T>
-    static bool same(const std::vector<T>& a, const std::vector<T>& b) { return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0; }
     // The share of pixels that see another depth than they should.
     static double deep(const Picture& exact, const Picture& found) {
         double wrong = 0;
@@ -44,14 +43,7 @@ protected:
             wrong += !(std::abs(exact.positions[i].w - found.positions[i].w) <= 1e-3f * exact.positions[i].w);
         return wrong / double(exact.positions.size());
     }
-    static double difference(const Picture& exact, const Picture& found) {
-        double sum = 0, whole = 0;
-        for (size_t i = 0; i < exact.beauty.size(); ++i) {
-            const glm::dvec3 d = glm::dvec3(exact.beauty[i]) - glm::dvec3(found.beauty[i]), r(exact.beauty[i]);
-            sum += glm::dot(d, d), whole += glm::dot(r, r);
-        }
-        return std::sqrt(sum / whole);
-    }
+    static double difference(const Picture& exact, const Picture& found) { return tests::difference(found.beauty, exact.beauty); }
 };
 
 TEST_F(PointsFrameTest, a_room_looks_as_rays_see_it) {

@@ -75,7 +75,7 @@ void add_technique(CLI::App& command, RenderOptions& o) {
                "whether a VPL sees a pixel: by its map, drawn from its cut through the scene\n(manylods), of both trees, of the scene and of the VPLs, with what is alike for many drawn once (megaviews), of all triangles (brute) or of few points (ism: imperfect shadow maps); by exact rays, the reference; or taken for granted");
     add_choice(command, "--point-lights", s.point_lights, point_lightings(),
                "how the scene's point lights light what is seen: by a shadow ray a pixel and light (direct), or as VPLs do, by --visibility\n"
-               "and --gather (gather), which auto does with more than " + std::to_string(passes::most_direct_points) + " of them");
+               "and --gather (gather), which auto does with more than " + std::to_string(passes::most_direct_points) + " of them, unless visibility is none");
     add_whole(command, "--vpls", s.vpls, 0, 1u << 24, "virtual point lights at most; 0: no indirect light");
     add_whole(command, "--bounces", s.bounces, 0, 64, "diffuse reflections of light before what the camera sees");
     add_parsed(command, "--gather", "all|subset:K|culled:K|tree:K", show_gather(s), "VPLs that each pixel gathers: all; or about K, a different subset for each pixel\n"

@@ -93,8 +93,7 @@ TEST_F(GatherFarTest, maps_equal_the_twin) {
             if (size == 32) polish(g);
             const auto lights = random_lights(90);
             const auto views = views_of(lights, size);
-            std::vector<uint> atlas(lights.size() * map_texels(size));
-            for (uint& texel : atlas) texel = floatBitsToUint(random() % 4 ? uniform(0, 4) : std::numeric_limits<float>::infinity());
+            const auto atlas = random_atlas(lights.size(), size, 4);
             const auto expected = far_gather_ref(g, lights, block, [&](size_t p, size_t i) {
                 return parallel_seen_ref(dvec3(g.position(p)), dvec3(g.geometric(p)), views[i], &atlas[i * map_texels(size)], size, 0.5);
             });

@@ -94,8 +94,7 @@ TEST_F(GatherMapsTest, equals_the_twin_on_random_maps) {
             HostGBuffer g = random_gbuffer(21, 15);
             if (size == 32) polish(g);
             const auto vpls = random_vpls(90);
-            std::vector<uint> atlas(vpls.size() * map_texels(size));
-            for (uint& texel : atlas) texel = floatBitsToUint(random() % 4 ? uniform(0, 3) : std::numeric_limits<float>::infinity());
+            const auto atlas = random_atlas(vpls.size(), size, 3);
             const auto expected = gather_ref(g, vpls, block, 3, [&](size_t p, size_t i) {
                 return map_seen_ref(dvec3(g.position(p)), dvec3(g.geometric(p)), dvec3(vpls[i].position), &atlas[i * map_texels(size)], size, 0.5);
             });
@@ -193,11 +192,7 @@ TEST_F(GatherMapsTest, exact_maps_tend_to_exact_visibility) {
     double light = 0, before = 1;
     for (const GatherRef& r : exact) light += r.irradiance.x;
     for (uint size : {8u, 32u, 128u}) {
-        std::vector<uint> atlas;
-        for (const Vpl& v : vpls) {
-            const auto map = exact_map(v.position, scene.triangles, size);
-            atlas.insert(atlas.end(), map.begin(), map.end());
-        }
+        const auto atlas = exact_atlas(vpls, scene.triangles, size);
         const auto got = run(g, vpls, {.bound = 1, .atlas = &atlas, .map_size = size, .bias = 0.5f});
         double error = 0;
         for (size_t i = 0; i < got.size(); ++i) error += std::abs(got[i].x - exact[i].irradiance.x) / light;

@@ -122,8 +122,7 @@ TEST_F(GatherOmniTest, maps_equal_the_twin) {
             HostGBuffer g = random_gbuffer(21, 15);
             if (size == 32) polish(g);
             const auto lights = random_lights(90);
-            std::vector<uint> atlas(lights.size() * map_texels(size));
-            for (uint& texel : atlas) texel = floatBitsToUint(random() % 4 ? uniform(0, 4) : std::numeric_limits<float>::infinity());
+            const auto atlas = random_atlas(lights.size(), size, 4);
             const auto expected = omni_gather_ref(g, lights, block, [&](size_t p, size_t i) {
                 return map_seen_ref(dvec3(g.position(p)), dvec3(g.geometric(p)), dvec3(lights[i].position), &atlas[i * map_texels(size)], size, 0.5);
             });
@@ -153,11 +152,7 @@ TEST_F(GatherOmniTest, exact_maps_tend_to_rays_and_rays_to_brute_force) {
     double light = 0, before = 1;
     for (const GatherRef& r : exact) light += r.irradiance.x;
     for (uint size : {8u, 32u, 128u}) {
-        std::vector<uint> atlas;
-        for (const Vpl& l : lights) {
-            const auto map = exact_map(l.position, scene.triangles, size);
-            atlas.insert(atlas.end(), map.begin(), map.end());
-        }
+        const auto atlas = exact_atlas(lights, scene.triangles, size);
         const auto got = run(g, lights, {.atlas = &atlas, .map_size = size, .bias = 0.5f, .omni = true});
         double error = 0;
         for (size_t i = 0; i < got.size(); ++i) error += std::abs(double(got[i].x) - exact[i].irradiance.x) / light;

@@ -8,106 +8,102 @@ namespace myriad::passes {
 
 using glm::dvec2, glm::dvec3;
 
-std::vector<GatherRef> gather_ref(const HostGBuffer& gbuffer, const std::vector<Vpl>& vpls, uint block, double bound, const SeenRef& seen) {
+namespace {
+
+// add(sum, p, i) for each light i of the set of pixel p; then what rounding may do to the sums.
+template <class Add>
+std::vector<GatherRef> sum_sets(const HostGBuffer& gbuffer, size_t lights, uint block, Add add) {
     std::vector<GatherRef> out(gbuffer.pixels());
     for (size_t p = 0; p < out.size(); ++p) {
         if (!gbuffer.hit(p)) continue;
         const size_t x = p % gbuffer.width, y = p / gbuffer.width;
-        for (size_t i = 0; i < vpls.size(); ++i) {
-            if (i % (block * block) != x % block + y % block * block) continue;
-            const dvec3 d = dvec3(vpls[i].position) - dvec3(gbuffer.position(p));
-            const double distance = length(d);
-            if (distance < 1e-19) continue;  // its square is no float
-            const double cos_receiver = dot(dvec3(gbuffer.shading(p)), d) / distance;
-            const double cos_vpl = -dot(dvec3(unpack_direction(vpls[i].normal)), d) / distance;
-            const dvec3 exitance = dvec3(vpls[i].flux) / std::numbers::pi * double(block * block);
-            const double g = std::min(std::max(cos_receiver, 0.0) * std::max(cos_vpl, 0.0) / (distance * distance), bound);
-            const double rounding = std::min(4e-7 / (distance * distance), bound);
-            if (std::min(cos_receiver, cos_vpl) < -1e-6) continue;
-            const Seen s = seen(p, i);
-            const Lobe lobe = gbuffer.lobe(p);
-            const double geometry = std::max(cos_receiver, 0.0) * std::max(cos_vpl, 0.0) / (distance * distance);
-            const BrdfRef f = brdf_ref(gbuffer.gloss_ref(p), dvec3(gbuffer.shading(p)), dvec3(lobe.view), d / distance, 1 / (bound * distance * distance));
-            const double diffuse = std::numbers::pi * f.diffuse;
-            out[p].irradiance += exitance * (diffuse * g * s.share);
-            out[p].slack += exitance * (diffuse * ((s.share + s.slack) * rounding + s.slack * g));
-            const double glossy = std::min(f.glossy * geometry, bound / std::numbers::pi);
-            out[p].mirrored += exitance * f.fresnel * glossy * s.share;
-            // A cosine that is off by 4e-7 is so by much of itself at grazing angles.
-            // So is the half-way vector of opposite ways, in a lobe of this half-width.
-            const double half_width = std::sqrt(lobe.alpha2 + 1 / (bound * distance * distance));
-            const double doubt = std::min(4e-7 / std::min(cos_receiver, cos_vpl) + 2e-6 / (half_width * length(d / distance + dvec3(lobe.view))) + 1e-3, 1.0);
-            out[p].mirrored_slack += exitance * f.fresnel * glossy * (s.slack + doubt * (s.share + s.slack));
-        }
+        for (size_t i = x % block + y % block * block; i < lights; i += size_t(block) * block) add(out[p], p, i);
         out[p].slack += 1e-5 * out[p].irradiance;
         out[p].mirrored_slack += 1e-5 * out[p].mirrored;
     }
     return out;
+}
+
+// `light`: what 1 of the transfer is worth. `doubt`: the share by which lobes' arguments may be off.
+void add_mirrored(GatherRef& sum, const dvec3& light, const dvec3& fresnel, double glossy, const Seen& s, double doubt) {
+    sum.mirrored += light * fresnel * glossy * s.share;
+    sum.mirrored_slack += light * fresnel * glossy * (s.slack + std::min(doubt, 1.0) * (s.share + s.slack));
+}
+
+dvec3 unit_light(const Vpl& light, uint block) { return dvec3(light.flux) / std::numbers::pi * double(block * block); }
+
+}  // namespace
+
+std::vector<GatherRef> gather_ref(const HostGBuffer& gbuffer, const std::vector<Vpl>& vpls, uint block, double bound, const SeenRef& seen) {
+    return sum_sets(gbuffer, vpls.size(), block, [&](GatherRef& sum, size_t p, size_t i) {
+        const dvec3 d = dvec3(vpls[i].position) - dvec3(gbuffer.position(p));
+        const double distance = length(d);
+        if (distance < 1e-19) return;  // its square is no float
+        const double cos_receiver = dot(dvec3(gbuffer.shading(p)), d) / distance;
+        const double cos_vpl = -dot(dvec3(unpack_direction(vpls[i].normal)), d) / distance;
+        const dvec3 exitance = unit_light(vpls[i], block);
+        const double geometry = std::max(cos_receiver, 0.0) * std::max(cos_vpl, 0.0) / (distance * distance), g = std::min(geometry, bound);
+        const double rounding = std::min(4e-7 / (distance * distance), bound);
+        if (std::min(cos_receiver, cos_vpl) < -1e-6) return;
+        const Seen s = seen(p, i);
+        const Lobe lobe = gbuffer.lobe(p);
+        const double widening = 1 / (bound * distance * distance);
+        const BrdfRef f = brdf_ref(gbuffer.gloss_ref(p), dvec3(gbuffer.shading(p)), dvec3(lobe.view), d / distance, widening);
+        const double diffuse = std::numbers::pi * f.diffuse;
+        sum.irradiance += exitance * (diffuse * g * s.share);
+        sum.slack += exitance * (diffuse * ((s.share + s.slack) * rounding + s.slack * g));
+        // A cosine that is off by 4e-7 is so by much of itself at grazing angles.
+        // So is the half-way vector of opposite ways, in a lobe of this half-width.
+        const double half_width = std::sqrt(lobe.alpha2 + widening);
+        const double doubt = 4e-7 / std::min(cos_receiver, cos_vpl) + 2e-6 / (half_width * length(d / distance + dvec3(lobe.view))) + 1e-3;
+        add_mirrored(sum, exitance, f.fresnel, std::min(f.glossy * geometry, bound / std::numbers::pi), s, doubt);
+    });
 }
 
 std::vector<GatherRef> far_gather_ref(const HostGBuffer& gbuffer, const std::vector<Vpl>& lights, uint block, const SeenRef& seen) {
-    std::vector<GatherRef> out(gbuffer.pixels());
-    for (size_t p = 0; p < out.size(); ++p) {
-        if (!gbuffer.hit(p)) continue;
-        const size_t x = p % gbuffer.width, y = p / gbuffer.width;
-        for (size_t i = x % block + y % block * block; i < lights.size(); i += block * block) {
-            const dvec3 to_light(far_direction(lights[i])), n(gbuffer.shading(p));
-            const double cosine = dot(n, to_light), over = dot(dvec3(gbuffer.geometric(p)), to_light), solid_angle = far_solid_angle(lights[i]);
-            if (std::min(cosine, over) < -1e-6) continue;
-            Seen s = seen(p, i);
-            if (std::min(cosine, over) < 1e-6) s = {0.5 * s.share, s.slack + 0.5 * s.share};
-            const dvec3 irradiance = dvec3(lights[i].flux) / std::numbers::pi * double(block * block);
-            const Lobe lobe = gbuffer.lobe(p);
-            const BrdfRef f = brdf_ref(gbuffer.gloss_ref(p), n, dvec3(lobe.view), to_light, solid_angle / std::numbers::pi);
-            const double diffuse = std::numbers::pi * f.diffuse * std::max(cosine, 0.0);
-            out[p].irradiance += irradiance * (diffuse * s.share);
-            out[p].slack += irradiance * (diffuse * s.slack + 4e-7 * (s.share + s.slack));
-            const double glossy = std::min(f.glossy * std::max(cosine, 0.0), 1 / solid_angle);
-            out[p].mirrored += irradiance * f.fresnel * glossy * s.share;
-            const double half_width = std::sqrt(lobe.alpha2 + solid_angle / std::numbers::pi);
-            const double doubt = std::min(4e-7 / std::max(cosine, 1e-9) + 2e-6 / (half_width * length(to_light + dvec3(lobe.view))) + 1e-3, 1.0);
-            out[p].mirrored_slack += irradiance * f.fresnel * glossy * (s.slack + doubt * (s.share + s.slack));
-        }
-        out[p].slack += 1e-5 * out[p].irradiance;
-        out[p].mirrored_slack += 1e-5 * out[p].mirrored;
-    }
-    return out;
+    return sum_sets(gbuffer, lights.size(), block, [&](GatherRef& sum, size_t p, size_t i) {
+        const dvec3 to_light(far_direction(lights[i])), n(gbuffer.shading(p));
+        const double cosine = dot(n, to_light), over = dot(dvec3(gbuffer.geometric(p)), to_light), solid_angle = far_solid_angle(lights[i]);
+        if (std::min(cosine, over) < -1e-6) return;
+        Seen s = seen(p, i);
+        if (std::min(cosine, over) < 1e-6) s = {0.5 * s.share, s.slack + 0.5 * s.share};
+        const dvec3 irradiance = unit_light(lights[i], block);
+        const Lobe lobe = gbuffer.lobe(p);
+        const double widening = solid_angle / std::numbers::pi;
+        const BrdfRef f = brdf_ref(gbuffer.gloss_ref(p), n, dvec3(lobe.view), to_light, widening);
+        const double diffuse = std::numbers::pi * f.diffuse * std::max(cosine, 0.0);
+        sum.irradiance += irradiance * (diffuse * s.share);
+        sum.slack += irradiance * (diffuse * s.slack + 4e-7 * (s.share + s.slack));
+        const double half_width = std::sqrt(lobe.alpha2 + widening);
+        const double doubt = 4e-7 / std::max(cosine, 1e-9) + 2e-6 / (half_width * length(to_light + dvec3(lobe.view))) + 1e-3;
+        add_mirrored(sum, irradiance, f.fresnel, std::min(f.glossy * std::max(cosine, 0.0), 1 / solid_angle), s, doubt);
+    });
 }
 
 std::vector<GatherRef> omni_gather_ref(const HostGBuffer& gbuffer, const std::vector<Vpl>& lights, uint block, const SeenRef& seen) {
-    std::vector<GatherRef> out(gbuffer.pixels());
-    for (size_t p = 0; p < out.size(); ++p) {
-        if (!gbuffer.hit(p)) continue;
-        const size_t x = p % gbuffer.width, y = p / gbuffer.width;
-        for (size_t i = x % block + y % block * block; i < lights.size(); i += block * block) {
-            const dvec3 d = dvec3(lights[i].position) - dvec3(gbuffer.position(p)), n(gbuffer.shading(p));
-            const double distance = length(d), radius = omni_radius(lights[i]);
-            if (distance < 1e-12) continue;
-            const double cosine = dot(n, d) / distance, over = dot(dvec3(gbuffer.geometric(p)), d) / distance;
-            // A place is as good as its floats, and a near light's direction with it.
-            const double turn = 4e-7 + 2e-7 * length(dvec3(gbuffer.position(p))) / distance;
-            if (std::min(cosine, over) < -turn) continue;
-            Seen s = seen(p, i);
-            if (std::min(cosine, over) < turn) s = {0.5 * s.share, s.slack + 0.5 * s.share};
-            const dvec3 intensity = dvec3(lights[i].flux) / std::numbers::pi * double(block * block);
-            const double spread = 1 / std::pow(std::max(distance, std::max(radius, 1e-12)), 2), g = spread * std::max(cosine, 0.0);
-            const double rounding = spread * 3 * turn;
-            const Lobe lobe = gbuffer.lobe(p);
-            const double widening = std::min(std::pow(radius / distance, 2), 1.0);
-            const BrdfRef f = brdf_ref(gbuffer.gloss_ref(p), n, dvec3(lobe.view), d / distance, widening);
-            const double diffuse = std::numbers::pi * f.diffuse;
-            out[p].irradiance += intensity * (diffuse * g * s.share);
-            out[p].slack += intensity * (diffuse * (s.slack * g + rounding * (s.share + s.slack)));
-            const double glossy = std::min(f.glossy * g, 1 / (std::numbers::pi * radius * radius));
-            out[p].mirrored += intensity * f.fresnel * glossy * s.share;
-            const double half_width = std::sqrt(lobe.alpha2 + widening);
-            const double doubt = std::min(2 * turn / std::max(cosine, 1e-9) + 5 * turn / (half_width * length(d / distance + dvec3(lobe.view))) + 1e-3, 1.0);
-            out[p].mirrored_slack += intensity * f.fresnel * glossy * (s.slack + doubt * (s.share + s.slack));
-        }
-        out[p].slack += 1e-5 * out[p].irradiance;
-        out[p].mirrored_slack += 1e-5 * out[p].mirrored;
-    }
-    return out;
+    return sum_sets(gbuffer, lights.size(), block, [&](GatherRef& sum, size_t p, size_t i) {
+        const dvec3 d = dvec3(lights[i].position) - dvec3(gbuffer.position(p)), n(gbuffer.shading(p));
+        const double distance = length(d), radius = omni_radius(lights[i]);
+        if (distance < 1e-12) return;
+        const double cosine = dot(n, d) / distance, over = dot(dvec3(gbuffer.geometric(p)), d) / distance;
+        // A place is as good as its floats, and a near light's direction with it.
+        const double turn = 4e-7 + 2e-7 * length(dvec3(gbuffer.position(p))) / distance;
+        if (std::min(cosine, over) < -turn) return;
+        Seen s = seen(p, i);
+        if (std::min(cosine, over) < turn) s = {0.5 * s.share, s.slack + 0.5 * s.share};
+        const dvec3 intensity = unit_light(lights[i], block);
+        const double spread = 1 / std::pow(std::max(distance, std::max(radius, 1e-12)), 2), g = spread * std::max(cosine, 0.0);
+        const double rounding = spread * 3 * turn;
+        const Lobe lobe = gbuffer.lobe(p);
+        const double widening = std::min(std::pow(radius / distance, 2), 1.0);
+        const BrdfRef f = brdf_ref(gbuffer.gloss_ref(p), n, dvec3(lobe.view), d / distance, widening);
+        const double diffuse = std::numbers::pi * f.diffuse;
+        sum.irradiance += intensity * (diffuse * g * s.share);
+        sum.slack += intensity * (diffuse * (s.slack * g + rounding * (s.share + s.slack)));
+        const double half_width = std::sqrt(lobe.alpha2 + widening);
+        const double doubt = 2 * turn / std::max(cosine, 1e-9) + 5 * turn / (half_width * length(d / distance + dvec3(lobe.view))) + 1e-3;
+        add_mirrored(sum, intensity, f.fresnel, std::min(f.glossy * g, 1 / (std::numbers::pi * radius * radius)), s, doubt);
+    });
 }
 
 Seen parallel_seen_ref(const dvec3& x, const dvec3& n_g, const View& view, const uint* map, uint size, double bias) {

@@ -55,6 +55,21 @@ protected:
         const std::vector<SharedMap>* asked = nullptr;  // GatherInputs::asked; all in one recording
         const std::vector<View>* far = nullptr;  // the lights are infinitely far, and these their views
     };
+    // Maps of depths up to `most`, a fourth of them of nothing.
+    std::vector<uint> random_atlas(size_t maps, uint size, float most) {
+        std::vector<uint> atlas(maps * map_texels(size));
+        for (uint& texel : atlas) texel = floatBitsToUint(random() % 4 ? uniform(0, most) : std::numeric_limits<float>::infinity());
+        return atlas;
+    }
+    static std::vector<uint> exact_atlas(const std::vector<Vpl>& lights, const scenes::Triangles& triangles, uint size) {
+        std::vector<uint> atlas;
+        for (const Vpl& light : lights) {
+            const auto map = exact_map(light.position, triangles, size);
+            atlas.insert(atlas.end(), map.begin(), map.end());
+        }
+        return atlas;
+    }
+
     // None, or maps when there is an atlas.
     std::vector<vec4> run(const HostGBuffer& host, const std::vector<Vpl>& vpls, const Options& o) {
         const GBuffer gbuffer = host.on(device);

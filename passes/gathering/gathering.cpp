@@ -70,37 +70,40 @@ const engine::Array<uint>* Gathering::reorder(engine::Recorder& recorder, const 
 
 void Gathering::record(engine::Recorder& recorder, const GatheringInputs& in, float pixel_angle, const engine::Array<uint>& exhausted,
                        const std::function<void(double)>& report) {
-    if (pick_) {
-        record_picked(recorder, in, exhausted, report);
-        return filter(recorder, in, pixel_angle);
-    }
-    const GatherInputs given{in.gbuffer, in.lights, in.count, block_, in.bound, settings_.far ? &in.views : nullptr};
-    const GatherInputs reordered{in.gbuffer, reordering_ ? reordering_->lights : in.lights, in.count, block_, in.bound, nullptr, maps_ ? reorder(recorder, in) : nullptr,
-                                 maps_ ? maps_->asked() : nullptr};
-    const GatherInputs& gather = reordering_ ? reordered : given;
-    gather_->clear(recorder);
+    if (pick_) record_picked(recorder, in, exhausted, report);
+    else record_sets(recorder, in, exhausted, report);
+    if (!filter_) return;
+    auto scope = recorder.scope("filter");
+    filter_->record(recorder, in.gbuffer, gathered(), block_, pixel_angle);
+}
+
+// Batch by batch: maps, and gather(first, batch). `most`: lights at once, where there are no maps.
+template <class Gather>
+void Gathering::record_batches(engine::Recorder& recorder, const GatheringInputs& in, const engine::Array<View>& views, uint32_t most, Gather gather,
+                               const std::function<void(double)>& report) {
     for (uint32_t first = 0; first < settings_.lights;) {
-        const uint32_t batch = maps_ ? maps_->batch() : gather_->max_vpls(block_);
-        if (maps_) maps_->record(recorder, in.scene, in.views, in.count, first);
+        const uint32_t batch = maps_ ? maps_->batch() : most;
+        if (maps_) maps_->record(recorder, in.scene, views, in.count, first);
         {
             auto scope = recorder.scope("gather");
-            if (settings_.visibility == GatherVisibility::rays)
-                gather_->record_rays(recorder, gather, first, batch, in.bvh, in.reach, exhausted);
-            else
-                gather_->record_maps(recorder, gather, first, batch, maps_ ? &maps_->atlas() : nullptr, settings_.maps.map_size, settings_.bias,
-                                    maps_ ? maps_->lists() : nullptr);
+            gather(first, batch);
         }
         recorder.submit_and_wait();  // a batch a submission: progress, and no time-out on devices that watch
         if (!maps_ || maps_->accept()) first += batch;  // else the same again, with longer lists or fewer views
         report(std::min(1.0, double(first) / settings_.lights));
     }
-    filter(recorder, in, pixel_angle);
 }
 
-void Gathering::filter(engine::Recorder& recorder, const GatheringInputs& in, float pixel_angle) {
-    if (!filter_) return;
-    auto scope = recorder.scope("filter");
-    filter_->record(recorder, in.gbuffer, gathered(), block_, pixel_angle);
+void Gathering::record_sets(engine::Recorder& recorder, const GatheringInputs& in, const engine::Array<uint>& exhausted, const std::function<void(double)>& report) {
+    const GatherInputs given{in.gbuffer, in.lights, in.count, block_, in.bound, settings_.far ? &in.views : nullptr};
+    const GatherInputs reordered{in.gbuffer, reordering_ ? reordering_->lights : in.lights, in.count, block_, in.bound, nullptr, maps_ ? reorder(recorder, in) : nullptr,
+                                 maps_ ? maps_->asked() : nullptr};
+    const GatherInputs& gather = reordering_ ? reordered : given;
+    gather_->clear(recorder);
+    record_batches(recorder, in, in.views, gather_->max_vpls(block_), [&](uint32_t first, uint32_t batch) {
+        if (settings_.visibility == GatherVisibility::rays) gather_->record_rays(recorder, gather, first, batch, in.bvh, in.reach, exhausted);
+        else gather_->record_maps(recorder, gather, first, batch, atlas(), settings_.maps.map_size, settings_.bias, lists());
+    }, report);
 }
 
 // Maps are drawn in the order of the tree, so that picks, in that order too, are gathered batch by batch.
@@ -114,18 +117,10 @@ void Gathering::record_picked(engine::Recorder& recorder, const GatheringInputs&
     const compute::ViewTree& views = views_ ? *views_ : maps_->shared()->tree();
     pick_->record_picks(recorder, in.gbuffer, views, in.lights, in.count, in.bound);
     pick_->clear(recorder);
-    for (uint32_t first = 0; first < settings_.lights;) {
-        const uint32_t batch = maps_ ? maps_->batch() : settings_.lights;
-        if (maps_) maps_->record(recorder, in.scene, views.nodes(), in.count, first);
-        {
-            auto scope = recorder.scope("gather");
-            if (settings_.visibility == GatherVisibility::rays) pick_->record_rays(recorder, in.gbuffer, in.bvh, in.reach, exhausted);
-            else pick_->record_maps(recorder, in.gbuffer, first, batch, maps_ ? &maps_->atlas() : nullptr, settings_.maps.map_size, settings_.bias, maps_ ? maps_->lists() : nullptr);
-        }
-        recorder.submit_and_wait();
-        if (!maps_ || maps_->accept()) first += batch;
-        report(std::min(1.0, double(first) / settings_.lights));
-    }
+    record_batches(recorder, in, views.nodes(), settings_.lights, [&](uint32_t first, uint32_t batch) {
+        if (settings_.visibility == GatherVisibility::rays) pick_->record_rays(recorder, in.gbuffer, in.bvh, in.reach, exhausted);
+        else pick_->record_maps(recorder, in.gbuffer, first, batch, atlas(), settings_.maps.map_size, settings_.bias, lists());
+    }, report);
 }
 
 }  // namespace myriad::passes

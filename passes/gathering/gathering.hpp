@@ -70,8 +70,14 @@ public:
 private:
     const engine::Array<uint>* reorder(engine::Recorder& recorder, const GatheringInputs& in);
 
-    void filter(engine::Recorder& recorder, const GatheringInputs& in, float pixel_angle);
+    template <class Gather>
+    void record_batches(engine::Recorder& recorder, const GatheringInputs& in, const engine::Array<View>& views, uint32_t most, Gather gather,
+                        const std::function<void(double)>& report);
+    void record_sets(engine::Recorder& recorder, const GatheringInputs& in, const engine::Array<uint>& exhausted, const std::function<void(double)>& report);
     void record_picked(engine::Recorder& recorder, const GatheringInputs& in, const engine::Array<uint>& exhausted, const std::function<void(double)>& report);
+
+    const engine::Array<uint>* atlas() const { return maps_ ? &maps_->atlas() : nullptr; }
+    const compute::AppendLists* lists() const { return maps_ ? maps_->lists() : nullptr; }
 
     GatheringSettings settings_;
     uint32_t block_;

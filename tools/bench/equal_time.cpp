@@ -80,8 +80,7 @@ Made ism_in(const Stage& stage, passes::FrameSettings settings, double ms, doubl
 
 void bench_equal_time(engine::Device& device, const BenchOptions& options, const RowSink& sink) {
     const std::string source = options.scene.empty() ? "builtin:atrium" : options.scene;
-    if (!options.images.empty() && !std::filesystem::is_directory(options.images))
-        throw InputError("--images '" + options.images + "': there is no such folder; create it");
+    require_folder(options.images);
     scenes::Scene scene = scenes::load(source, options.seed);
     scenes::apply_sky(scene, scenes::SkyChoice::automatic);
     const scenes::Triangles triangles = scenes::flatten(scene);

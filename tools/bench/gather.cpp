@@ -90,7 +90,7 @@ public:
 
         for (auto& g : all) g->irradiance = engine::download(device_, g->result(), uint64_t(width) * height);
         for (auto& g : all) {
-            g->row.error["relMSE"] = error(all[0]->irradiance, g->irradiance);
+            g->row.error["relMSE"] = white_error(all[0]->irradiance, g->irradiance, width, height);
             g->row.counters["vpls"] = alive;
             set_bytes(g->row, device_);
         }
@@ -183,19 +183,6 @@ private:
             for (const auto& [name, ms] : stages[i]) all[i]->row.stages[name].ms.push_back(ms), total += ms;
             all[i]->row.ms.ms.push_back(total);
         }
-    }
-
-    static double error(const std::vector<vec4>& reference, const std::vector<vec4>& test) {
-        const auto image = [](const std::vector<vec4>& values) {
-            std::vector<float> texels;
-            for (const vec4& v : values)
-                for (int i = 0; i < 4; ++i) texels.push_back(v[i] / 3.14159265f);
-            Image image;
-            image.width = width, image.height = height;
-            image.add({"R", "G", "B"}, texels, 4);
-            return image;
-        };
-        return measure(image(reference), image(test), 0.01).rel_mse;
     }
 
     // What a technique needs for an error, between its rows on logarithmic axes; nothing beyond them.

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "scenes/sky.hpp"
+#include "tools/metrics.hpp"
 
 namespace myriad::tools {
 
@@ -75,6 +76,23 @@ void add_maps_times(BenchRow& row, const passes::Frame& frame) {
         if (pass.name == "cut" || pass.name == "view tree" || pass.name == "pairs" || pass.name == "fuse" || pass.name == "splat" || pass.name == "brute" || pass.name == "ism") total += pass.gpu_ms, stages[pass.name] += pass.gpu_ms;
     row.ms.ms.push_back(total);
     for (const auto& [name, ms] : stages) row.stages[name].ms.push_back(ms);
+}
+
+double white_error(const std::vector<vec4>& reference, const std::vector<vec4>& test, uint32_t width, uint32_t height) {
+    const auto image = [&](const std::vector<vec4>& values) {
+        std::vector<float> texels;
+        for (const vec4& v : values)
+            for (int i = 0; i < 4; ++i) texels.push_back(v[i] / 3.14159265f);
+        Image image;
+        image.width = width, image.height = height;
+        image.add({"R", "G", "B"}, texels, 4);
+        return image;
+    };
+    return measure(image(reference), image(test), 0.01).rel_mse;
+}
+
+void require_folder(const std::string& images) {
+    if (!images.empty() && !std::filesystem::is_directory(images)) throw InputError("--images '" + images + "': there is no such folder; create it");
 }
 
 void set_bytes(BenchRow& row, const engine::Device& device) {

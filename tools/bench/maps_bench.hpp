@@ -29,6 +29,12 @@ BenchRow maps_row(const char* bench, const std::string& source, const char* tech
 // What the frame that was rendered last took for its maps: cut and splat, or what stands in their place. A sample of the row's time and stages.
 void add_maps_times(BenchRow& row, const passes::Frame& frame);
 
+// relMSE of what white diffuse surfaces reflect, of irradiance a pixel each.
+double white_error(const std::vector<vec4>& reference, const std::vector<vec4>& test, uint32_t width, uint32_t height);
+
+// For --images. Throws InputError where a folder is named that does not exist.
+void require_folder(const std::string& images);
+
 // The device memory's peaks since they were reset, as spec, section 5 names them.
 void set_bytes(BenchRow& row, const engine::Device& device);
 

@@ -114,7 +114,7 @@ public:
                 const bool measured = technique.method == MapMethod::megaviews || count == counts.front() ||
                                       count <= (technique.method == MapMethod::brute ? most_brute : options_.measured);
                 BenchRow row = measured ? measure_maps(technique, distribution, lights, count) : extrapolated(largest.at(technique.name), count);
-                if (measured && !reference.empty()) row.error["relMSE"] = error(reference, irradiance(lights, &technique, count));
+                if (measured && !reference.empty()) row.error["relMSE"] = white_error(reference, irradiance(lights, &technique, count), width, height);
                 if (measured) largest[technique.name] = row;
                 Plot::Line& line = lines[technique.name];
                 line.points.push_back({double(count), row.ms.median()});
@@ -294,20 +294,6 @@ private:
         recorder.submit_and_wait();
         if (engine::download(device_, exhausted)[0]) throw DeviceError("a ray's walk needs more loop iterations than this driver allows; use Mesa 23 or later");
         return engine::download(device_, pass.irradiance(), uint64_t(width) * height);
-    }
-
-    // Of what white diffuse surfaces reflect.
-    static double error(const std::vector<vec4>& reference, const std::vector<vec4>& test) {
-        const auto image = [](const std::vector<vec4>& values) {
-            std::vector<float> texels;
-            for (const vec4& v : values)
-                for (int i = 0; i < 4; ++i) texels.push_back(v[i] / 3.14159265f);
-            Image image;
-            image.width = width, image.height = height;
-            image.add({"R", "G", "B"}, texels, 4);
-            return image;
-        };
-        return measure(image(reference), image(test), 0.01).rel_mse;
     }
 
     // The exponent from 64k views on; where there are no two such numbers, over the last factor of 16.

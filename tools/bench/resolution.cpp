@@ -91,8 +91,7 @@ private:
 }  // namespace
 
 void bench_resolution(engine::Device& device, const BenchOptions& options, const RowSink& sink) {
-    if (!options.images.empty() && !std::filesystem::is_directory(options.images))
-        throw InputError("--images '" + options.images + "': there is no such folder; create it");
+    require_folder(options.images);
     Experiment experiment(device, options, sink);
     for (const uint32_t views : options.views.empty() ? std::vector<uint32_t>{1024} : options.views) experiment.run(views);
 }
