@@ -6,11 +6,17 @@
 #include "passes/splat/splat_io.h"
 layout(constant_id = 2) const uint threads_per_group = 1u;
 layout(constant_id = shared_maps_constant) const bool shared_maps = false;
+layout(constant_id = coverage_constant) const uint coverage = coverage_exact;
 layout(push_constant, scalar) uniform Push { SplatPush push; };
 
-void draw_half(Splat s, uint half_index, uint map) {
+void draw_half(Splat s, uint half_index, uint map, uint dice) {
     const Footprint f = footprint(half_index, s.d, s.radius);
     const uint size = push.map_size;
+    if (coverage != coverage_exact && splat_is_small(f.radius * float(size))) {
+        const SmallSplat small = splat_small(s, half_index, f.center, size, coverage, dice);
+        if (small.depth > 0.0f) atomicMin(push.atlas.at[map + texel_index(half_index, small.x, small.y, size)], floatBitsToUint(small.depth));
+        return;
+    }
     const uint x0 = splat_first(f.center.x - f.radius, size), x1 = splat_end(f.center.x + f.radius, size);
     const uint y0 = splat_first(f.center.y - f.radius, size), y1 = splat_end(f.center.y + f.radius, size);
     if (x0 >= x1) return;
@@ -27,10 +33,15 @@ void draw_half(Splat s, uint half_index, uint map) {
     }
 }
 
-void draw_parallel(View view, Splat s, ParallelFrame frame, uint map) {
+void draw_parallel(View view, Splat s, ParallelFrame frame, uint map, uint dice) {
     const uint columns = parallel_columns(view);
     const float texel = parallel_texel(view, push.map_size), radius = s.radius / texel;
     const vec2 middle = parallel_place(view, frame, s.d, push.map_size);
+    if (coverage != coverage_exact && splat_is_small(2.0f * radius)) {
+        const SmallSplat small = splat_small_parallel(s, view, frame, middle, push.map_size, coverage, dice);
+        if (small.depth > 0.0f) atomicMin(push.atlas.at[map + small.y * columns + small.x], floatBitsToUint(small.depth));
+        return;
+    }
     const uint x0 = parallel_first(middle.x, radius, columns), x1 = parallel_end(middle.x, radius, columns);
     const uint y1 = parallel_end(middle.y, radius, parallel_rows(view, push.map_size));
     if (x0 >= x1) return;
@@ -47,16 +58,16 @@ void draw_parallel(View view, Splat s, ParallelFrame frame, uint map) {
     }
 }
 
-void draw(View view, Sphere sphere, uint cone, uvec2 box, uint map) {
+void draw(View view, Sphere sphere, uint cone, uvec2 box, uint map, uint dice) {
     const Splat s = splat_of(view, sphere, cone, box);
     if (is_parallel(view)) {
-        draw_parallel(view, s, parallel_frame(view.direction), map);
+        draw_parallel(view, s, parallel_frame(view.direction), map, dice);
         return;
     }
     if (s.height == 0.0f) return;  // seen edge-on
     const uint near = half_of(s.d);
-    draw_half(s, near, map);
-    if (splat_in_both(s.d, s.radius, push.map_size)) draw_half(s, 1u - near, map);
+    draw_half(s, near, map, dice);
+    if (splat_in_both(s.d, s.radius, push.map_size)) draw_half(s, 1u - near, map, dice);
 }
 
 void main() {
@@ -76,6 +87,6 @@ void main() {
         const uint node = block.first + findLSB(drawn);
         const uvec2 box = push.tree.boxes.at[node];
         if (!opacity_in_view(bsh_missing(box), g.view)) continue;
-        draw(view, bsh_decode(block.frame, push.tree.spheres.at[node]), push.tree.cones.at[node], box, map);
+        draw(view, bsh_decode(block.frame, push.tree.spheres.at[node]), push.tree.cones.at[node], box, map, splat_dice(node, g.view));
     }
 }

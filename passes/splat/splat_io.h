@@ -3,6 +3,7 @@
 #define MYRIAD_PASSES_SPLAT_IO_H
 
 #include "compute/bsh/bsh_io.h"
+#include "compute/common/hash.h"
 #include "compute/manylods/cut_io.h"
 #include "compute/opacity/opacity_io.h"
 #include "compute/views/paraboloid.h"
@@ -33,6 +34,12 @@ struct SplatPush {
 };
 // Specialisation constant: maps are shared.
 const uint shared_maps_constant = 22u;
+
+// Specialisation constant: what a node covers whose footprint is less than a texel wide.
+const uint coverage_constant = 26u;
+const uint coverage_exact = 0u;       // the texels whose middles it covers, as larger ones do
+const uint coverage_full = 1u;        // all of the texel that its middle is in, as points are drawn in the papers
+const uint coverage_stochastic = 2u;  // a texel, with the probability of its share of it
 
 // "splat/clear": one invocation a row of a half map.
 struct SplatClearPush {
@@ -104,6 +111,51 @@ MYRIAD_FN uint splat_first(float u, uint size) {
 MYRIAD_FN uint splat_end(float u, uint size) {
     const float t = (u + 1.0f) * 0.5f * float(size) + 0.5f;
     return uint(clamp(t, 0.0f, float(size)));
+}
+
+// ---- Nodes smaller than a texel ----
+//
+// "Full": the node is a point, its middle. "Stochastic": a point is thrown evenly into the square of a texel's side around the footprint's
+// middle, which holds all of the footprint; where the node covers that point, the texel around the point gets the depth there. So each texel
+// gets it with the probability of the node's area in it, and node and view alone decide.
+
+MYRIAD_FN bool splat_is_small(float diameter) { return diameter < 1.0f; }  // in texels; NaN is not
+
+MYRIAD_FN uint splat_dice(uint node, uint view) { return hash_pair(node, view); }
+// In [-1/2, 1/2)^2.
+MYRIAD_FN vec2 splat_throw(uint dice) { return vec2(float(dice >> 16), float(dice & 0xffffu)) * (1.0f / 65536.0f) - 0.5f; }
+
+// The one texel that may be covered, and its depth; negative: none is.
+struct SmallSplat {
+    float depth;
+    uint x, y;
+};
+
+// `at` in texels, may lie outside of the map of columns x rows.
+MYRIAD_FN SmallSplat splat_small_at(vec2 at, float depth, uint columns, uint rows) {
+    SmallSplat small;
+    const bool inside = at.x >= 0.0f && at.y >= 0.0f && at.x < float(columns) && at.y < float(rows);
+    small.depth = inside ? depth : -1.0f;
+    small.x = inside ? uint(at.x) : 0u;
+    small.y = inside ? uint(at.y) : 0u;
+    return small;
+}
+
+// `middle` is the footprint's, (u, v) of the half.
+MYRIAD_FN SmallSplat splat_small(Splat s, uint half_index, vec2 middle, uint size, uint coverage, uint dice) {
+    const bool full = coverage == coverage_full;
+    const vec2 uv = full ? middle : middle + splat_throw(dice) * (2.0f / float(size));
+    const float depth = full ? sqrt(dot(s.d, s.d)) : splat_depth(s, unproject(half_index, uv));
+    return splat_small_at((uv + 1.0f) * (0.5f * float(size)), depth, size, size);
+}
+
+// The same for a parallel view; `middle` in texels.
+MYRIAD_FN SmallSplat splat_small_parallel(Splat s, View view, ParallelFrame frame, vec2 middle, uint size, uint coverage, uint dice) {
+    const bool full = coverage == coverage_full;
+    const vec2 off = full ? vec2(0.0f) : splat_throw(dice);
+    const float texel = parallel_texel(view, size);
+    const float depth = full ? dot(s.d, view.direction) : splat_parallel_depth(s, view.direction, (off.x * texel) * frame.across + (off.y * texel) * frame.down);
+    return splat_small_at(middle + off, depth, parallel_columns(view), parallel_rows(view, size));
 }
 MYRIAD_END
 

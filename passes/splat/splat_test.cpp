@@ -35,10 +35,11 @@ protected:
         }
         return views;
     }
-    uint arity = 8;
+    uint arity = 8, coverage = coverage_exact;
     engine::Constants kind_of(const std::vector<View>& views) const {
         engine::Constants constants = compute::bsh_constants(arity);
         constants[parallel_constant] = !views.empty() && is_parallel(views[0]);
+        constants[coverage_constant] = coverage;
         return constants;
     }
 
@@ -119,7 +120,7 @@ protected:
     // The cut of these views, by both variants of the kernel, against the twin. Returns the share of texels that hold something.
     double check(const Tree& tree, const std::vector<View>& views, float epsilon, uint map_size) {
         const auto groups = cut(tree, views, epsilon, map_size);
-        const auto expected = splat_ref(tree.host, groups, views, 0, uint(views.size()), map_size);
+        const auto expected = splat_ref(tree.host, groups, views, 0, uint(views.size()), map_size, coverage);
         EXPECT_TRUE(same(expected, splat(tree, groups, views, map_size, {})));
         EXPECT_TRUE(same(expected, splat(tree, groups, views, map_size, {.threads_per_group = 8})));
         return 1 - double(std::ranges::count(expected, atlas_nothing)) / double(expected.size());
@@ -188,6 +189,47 @@ TEST_F(SplatTest, parallel_views_of_every_map_size) {
             EXPECT_GT(check(tree, parallel_views(tree.scene, 12, size), depth == 12 ? 0.5f : 2, size), 0.02);
         }
     }
+}
+
+// Fine cuts, most of whose nodes are smaller than a texel.
+TEST_F(SplatTest, every_coverage) {
+    const Tree tree = random_tree(12);
+    for (coverage = coverage_exact; coverage <= coverage_stochastic; ++coverage)
+        for (const uint size : {2u, 16u, 31u}) {
+            SCOPED_TRACE(testing::Message() << "coverage " << coverage << ", maps of " << size);
+            EXPECT_GT(check(tree, random_views(12, 1.5f), 0.4f, size), 0.2);
+            EXPECT_GT(check(tree, parallel_views(tree.scene, 12, size), 0.6f, size), 0.02);
+        }
+}
+
+// A square of 0.36 texels fills, in the mean, 0.36 of a texel: of many views by the dice, of many places by the texels' middles. A point fills one.
+TEST_F(SplatTest, small_nodes_cover_their_share_of_texels) {
+    const uint size = 32;
+    const float distance = 10, texel = 4 * distance / float(size), side = 0.6f * texel;  // along the axis du subtends 2 du
+    TestScene scene;
+    scene.material(vec3(1));
+    scene.quad({distance, -side / 2, -side / 2}, {0, side, 0}, {0, 0, side}, 0);
+    const Tree tree = grow(scene, 6);
+    std::vector<View> still(4096, view({0, 0.3f * texel, 0.1f * texel}, {1, 0, 0}, pi)), parallel(4096, parallel_view({1, 0, 0}, {0, -34, -34}, {distance, 34, 34}, size));
+    std::vector<View> moved = still;
+    for (View& v : moved) v.position += texel * vec3(0, uniform(), uniform());
+    const auto covered = [&](const std::vector<View>& views) {
+        const auto groups = cut(tree, views, 1, size);
+        EXPECT_EQ(groups.size(), views.size()) << "the root in each";
+        const auto atlas = splat(tree, groups, views, size, {});
+        return 1.0 / double(views.size()) * double(atlas.size() - size_t(std::ranges::count(atlas, atlas_nothing)));
+    };
+    const double share = 0.36, sigma = std::sqrt(share * (1 - share) / 4096);
+    const double margin = 2 * 2 * double(side) / double(texel) * 0.6 / 128;  // boxes are drawn by splat_margin of a radius larger, and curve
+    const float parallel_side = side / parallel_texel(parallel[0], size);
+    ASSERT_LT(parallel_side, 0.6f);
+    coverage = coverage_stochastic;
+    for (const auto& [views, expected] : {std::pair{&still, share}, {&moved, share}, {&parallel, double(parallel_side * parallel_side)}})
+        EXPECT_NEAR(covered(*views), expected, 4 * sigma + margin);
+    coverage = coverage_exact;
+    EXPECT_NEAR(covered(moved), share, 4 * sigma + margin);
+    coverage = coverage_full;
+    for (const std::vector<View>* views : {&still, &moved, &parallel}) EXPECT_EQ(covered(*views), 1);
 }
 
 // What is drawn is what lines of sight meet, in doubles, but for texels at edges; and the map is put to use.
