@@ -129,6 +129,19 @@ TEST_F(command_line, bench_megaviews_resolution) {
     EXPECT_TRUE(std::filesystem::exists(folder / "megaviews-100-16-svo5.png"));
 }
 
+TEST_F(command_line, bench_coverage) {
+    succeed({"bench", "coverage", "--scene", "builtin:cornell", "--views", "100", "--samples", "12", "--epsilon", "0.5", "--levels", "6", "--repeat", "1", "--json",
+             folder / "rows.json"});
+    std::map<std::string, double> bias;
+    for (const auto& row : rows_of(folder / "rows.json")) {
+        EXPECT_EQ(row["bench"], "coverage");
+        EXPECT_EQ(row["settings"].contains("levels"), row["technique"] == "megaviews");
+        bias[row["technique"].get<std::string>() + " " + row["settings"].value("coverage", "exact")] = row["error"]["bias"];
+    }
+    EXPECT_EQ(bias.size(), 7u);
+    for (const char* technique : {"manylods", "megaviews"}) EXPECT_LT(bias[technique + std::string(" full")], bias[technique + std::string(" exact")]);
+}
+
 TEST_F(command_line, bench_gather) {
     refuse(2, {"bench", "manylods", "--picks", "4"}, "--picks is an option of bench gather");
     refuse(2, {"bench", "gather", "--picks", "0"}, "--picks");

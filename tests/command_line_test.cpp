@@ -177,7 +177,19 @@ TEST_F(command_line, megaviews) {
     refuse(2, {"render", "builtin:cornell", "-o", exr, "--size", "64x48", "--samples", "12", "--visibility", "megaviews", "--vpls", "2000000"}, "megaviews takes up to 1048576 views");
     refuse(2, tiny + Arguments{"-o", exr, "--fusion", "queries"}, "--fusion queries is about maps that views share");
     refuse(2, tiny + Arguments{"-o", exr, "--visibility", "megaviews", "--gather", "tree:8", "--fusion", "queries"}, "--fusion queries");
+    refuse(2, tiny + Arguments{"-o", exr, "--visibility", "brute", "--coverage", "full"}, "--coverage full is about nodes that are drawn, and --visibility brute draws none");
+    refuse(2, tiny + Arguments{"-o", exr, "--coverage", "half"}, "--coverage");
     const std::string stats = folder / "s.json";
+    std::map<std::string, double> light;
+    for (const char* coverage : {"exact", "full", "stochastic"}) {
+        succeed(tiny + Arguments{"-o", exr, "-q", "--stats", stats, "--visibility", "megaviews", "--epsilon", "0.5", "--coverage", coverage});
+        EXPECT_EQ(nlohmann::json::parse(bytes_of(stats))["settings"].value("coverage", "exact"), coverage);
+        const auto plane = read_exr(exr).find("G")->values;
+        light[coverage] = std::accumulate(plane.begin(), plane.end(), 0.0);
+    }
+    EXPECT_LT(light["full"], light["exact"]);
+    EXPECT_LT(light["full"], light["stochastic"]);
+    EXPECT_NE(light["exact"], light["stochastic"]);
     succeed(tiny + Arguments{"-o", exr, "-q", "--stats", stats, "--visibility", "megaviews", "--fusion", "queries"});
     EXPECT_EQ(nlohmann::json::parse(bytes_of(stats))["settings"]["fusion"], "queries");
     succeed(tiny + Arguments{"-o", exr, "-q", "--stats", stats, "--visibility", "megaviews"});

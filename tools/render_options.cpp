@@ -91,6 +91,8 @@ void add_technique(CLI::App& command, RenderOptions& o) {
     add_number(command, "--vpl-bound", s.vpl_bound, 1e-30f, 1e30f, "bound of the geometry term, 1/m^2; unless given pi * VPLs / area");
     add_whole(command, "--map-size", s.maps.map_size, 2, 1024, "texels a side of each half of a map");
     add_number(command, "--epsilon", s.maps.epsilon, 1e-3f, 1e6f, "largest diameter of a node in the cut, in texels of its map");
+    add_choice(command, "--coverage", s.maps.coverage, coverages(), "what a node covers that is smaller than a texel: the texels whose middles it covers (exact), all of the texel that it is in,\n"
+               "as points are drawn (full: hides too much), or a texel with the probability of its share of it (stochastic)");
     add_choice(command, "--fusion", s.maps.asks, fusions(), "megaviews: each view's map gets all that it shares with others (views), or each look-up asks\nthe shared map as well (queries): the same image");
     add_whole(command, "--ism-points", s.maps.ism.points, 1, 1u << 24, "points that ism draws into each map, of the --samples there are");
     add_number(command, "--bias", s.bias, 0, 1e6f, "receiver bias of maps, in half diagonals of a texel");
@@ -158,6 +160,11 @@ const Choices<passes::Brdf>& brdfs() {
 
 const Choices<bool>& fusions() {
     static const Choices<bool> all = {{"views", false}, {"queries", true}};
+    return all;
+}
+
+const Choices<uint32_t>& coverages() {
+    static const Choices<uint32_t> all = {{"exact", coverage_exact}, {"full", coverage_full}, {"stochastic", coverage_stochastic}};
     return all;
 }
 
@@ -284,6 +291,9 @@ void check_outputs(const RenderOptions& o) {
         throw InputError("--update " + show_update(o.frame.maps) + " carries the cuts of manylods from frame to frame; megaviews has none, its trees are walked anew");
     if (o.frame.maps.asks && (o.frame.visibility != passes::Visibility::megaviews || o.frame.gather != passes::GatherMethod::subset))
         throw InputError("--fusion queries is about maps that views share, looked up by --gather all and subset; give --visibility megaviews and such a gather, or leave it out");
+    if (o.frame.maps.coverage != coverage_exact && o.frame.visibility != passes::Visibility::manylods && o.frame.visibility != passes::Visibility::megaviews)
+        throw InputError("--coverage " + choice_name(coverages(), o.frame.maps.coverage) + " is about nodes that are drawn, and --visibility " +
+                         choice_name(visibilities(), o.frame.visibility) + " draws none; give manylods or megaviews");
     if (o.gather_distance && o.frame.gather != passes::GatherMethod::culled)
         throw InputError("--gather-distance is about culled, and --gather " + show_gather(o.frame) + " has no cut-off; give --gather culled:K with it");
     if (o.frame.gather != passes::GatherMethod::subset && o.frame.maps.update != passes::CutUpdate::basic)

@@ -50,6 +50,7 @@ const Choices<passes::PointLighting>& point_lightings();
 const Choices<passes::Primary>& primaries();
 const Choices<passes::Brdf>& brdfs();
 const Choices<bool>& fusions();
+const Choices<uint32_t>& coverages();
 const Choices<compute::AppendMode>& append_modes();
 const Choices<uint32_t>& arities();
 // --update: basic, incremental, lazy or lazy:q.

@@ -169,6 +169,7 @@ ordered_json settings_json(const passes::FrameSettings& s, float vpl_bound, bool
     if (s.visibility == passes::Visibility::manylods) json["update"] = show_update(s.maps);
     if (s.visibility == passes::Visibility::megaviews) json["fusion"] = choice_name(fusions(), s.maps.asks);
     json["epsilon"] = shortest(s.maps.epsilon);
+    if (s.maps.coverage != coverage_exact) json["coverage"] = choice_name(coverages(), s.maps.coverage);
     json["tree"] = show_tree(s);
     if (s.octree_levels) return json;
     json["log2_samples"] = s.log2_samples;

@@ -13,6 +13,7 @@ uint32_t round_up(uint32_t value, uint32_t multiple) { return (value + multiple 
 engine::Constants kind_of(const MapSettings& settings) {
     engine::Constants constants = settings.octree ? compute::Svo::constants() : compute::bsh_constants(settings.arity);
     constants[parallel_constant] = settings.parallel;
+    constants[coverage_constant] = settings.coverage;
     return constants;
 }
 

@@ -46,6 +46,8 @@ const std::vector<Bench>& benches() {
          {"--csv", "--plot", "--arity", "--distributions", "--measured", "--levels"}, 16, 2.0f},
         {"megaviews-resolution", "maps of 16 to 256 texels a side, and octrees of 8 to 11 levels: what they take, and the image's error", bench_resolution,
          {"--arity", "--map-sizes", "--levels", "--images"}, 16, 2.0f},
+        {"coverage", "what nodes smaller than a texel cover: their middles, whole texels, or a share by dice; how much light each way of drawing loses", bench_coverage,
+         {"--arity", "--levels", "--images"}, 16},
         {"gather", "what pixels gather of many VPLs: all, subsets, some that are not culled, and what a light tree picks, with their errors", bench_gather,
          {"--arity", "--bounces", "--picks"}},
         {"sort", "radix sorts of keys with payload: the device's, in several shapes, against the host's", bench_sort, {"--items"}},
@@ -116,7 +118,7 @@ void add_bench(CLI::App& app) {
     bench->add_option("--views", o.views, "numbers of views, separated by commas")->delimiter(',')->check(CLI::Range(1u, 1u << 20));
     bench->add_option("--samples", o.log2_samples, "log2 of the number of surface samples (20)")->check(CLI::Range(0u, 26u));
     bench->add_option("--arity", o.arity, "children of a node of the tree: 2, 4 or 8 (8)")->check(CLI::IsMember({2u, 4u, 8u}));
-    bench->add_option("--map-size", o.map_size, "texels a side of a half map (32; megaviews-views and -resolution: 16)")->check(CLI::Range(2u, 1024u));
+    bench->add_option("--map-size", o.map_size, "texels a side of a half map (32; coverage, megaviews-views and -resolution: 16)")->check(CLI::Range(2u, 1024u));
     bench->add_option("--epsilon", o.epsilon, "criterion, texels (1; megaviews-views and -resolution: 2)")->check(CLI::Range(0.01f, 1000.0f));
     bench->add_option("--repeat", o.repeats, "measured runs of each row, after a warm-up (5)")->check(CLI::Range(1u, 1000u));
     bench->add_option("--memory-limit", arguments->memory_mib, "MiB of device memory (all)")->check(CLI::Range(1u, 1u << 24));
@@ -134,8 +136,8 @@ void add_bench(CLI::App& app) {
     bench->add_option("--measured", o.measured, "megaviews-views: the most views that ManyLoDs draws; more are extrapolated (65536)")->check(CLI::Range(1u, 1u << 20));
     bench->add_option("--plot", o.plot, "manylods-fig8: draw the cuts' times over the frames, as SVG; megaviews-views: the maps' over views");
     bench->add_option("--map-sizes", o.map_sizes, "megaviews-resolution: texels a side, separated by commas (16,32,64,128,256)")->delimiter(',')->check(CLI::Range(2u, 1024u));
-    bench->add_option("--levels", o.levels, "of the scene's octree. megaviews-resolution: separated by commas (8,9,10,11); megaviews-views: one, of what MegaViews draws in place of samples")->delimiter(',')->check(CLI::Range(1u, 12u));
-    bench->add_option("--images", o.images, "manylods-ism, megaviews-resolution: a folder for the images that are compared, as EXR and PNG");
+    bench->add_option("--levels", o.levels, "of the scene's octree. megaviews-resolution: separated by commas (8,9,10,11); coverage, megaviews-views: one, of what MegaViews draws in place of samples")->delimiter(',')->check(CLI::Range(1u, 12u));
+    bench->add_option("--images", o.images, "coverage, manylods-ism, megaviews-resolution: a folder for the images that are compared, as EXR and PNG");
     bench->add_option("--device", arguments->device, "part of a device's name, or its index");
     bench->callback([arguments, bench] { run(*arguments, *bench); });
 }

@@ -87,8 +87,9 @@ void bench_arity(engine::Device& device, const BenchOptions& options, const RowS
 void bench_equal_time(engine::Device& device, const BenchOptions& options, const RowSink& sink);
 // bench/megaviews.cpp
 void bench_megaviews(engine::Device& device, const BenchOptions& options, const RowSink& sink);
-// bench/resolution.cpp
+// bench/maps_error.cpp
 void bench_resolution(engine::Device& device, const BenchOptions& options, const RowSink& sink);
+void bench_coverage(engine::Device& device, const BenchOptions& options, const RowSink& sink);
 // bench/gather.cpp
 void bench_gather(engine::Device& device, const BenchOptions& options, const RowSink& sink);
 // bench/octree.cpp

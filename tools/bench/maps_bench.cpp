@@ -6,6 +6,7 @@
 
 #include "scenes/sky.hpp"
 #include "tools/metrics.hpp"
+#include "tools/render_options.hpp"
 
 namespace myriad::tools {
 
@@ -60,6 +61,7 @@ BenchRow maps_row(const char* bench, const std::string& source, const char* tech
     if (settings.visibility != Visibility::rays && settings.visibility != Visibility::none) row.settings["map_size"] = settings.maps.map_size;
     if (settings.visibility == Visibility::manylods || settings.visibility == Visibility::megaviews) {
         row.settings["epsilon"] = settings.maps.epsilon;
+        if (settings.maps.coverage != coverage_exact) row.settings["coverage"] = choice_name(coverages(), settings.maps.coverage);
         if (settings.octree_levels) row.settings["levels"] = settings.octree_levels;
         else row.settings["samples"] = uint64_t(1) << settings.log2_samples, row.settings["arity"] = settings.maps.arity;
         if (settings.maps.update == CutUpdate::incremental) row.settings["revalidate"] = settings.maps.revalidate ? "all" : "due";
