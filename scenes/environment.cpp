@@ -140,7 +140,7 @@ std::vector<EnvironmentCell> environment_cells(const Environment& environment, u
     if (!(splitter.total() > 0)) throw InputError("'" + environment.name + "' is black all over and lights nothing; give another environment, or none");
     std::vector<EnvironmentCell> cells;
     cells.reserve(count);
-    splitter.split({0, double(environment.width), 0, double(environment.height)}, count, cells);
+    if (count > 0) splitter.split({0, double(environment.width), 0, double(environment.height)}, count, cells);
     return cells;
 }
 

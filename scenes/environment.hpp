@@ -43,7 +43,7 @@ std::vector<EnvironmentCell> environment_cells(const Environment& environment, u
 inline constexpr uint32_t default_environment_lights = 256;  // as many as a pixel gathers
 inline constexpr uint32_t most_environment_lights = 16384;
 
-// Puts the scene into the environment: `count` directional lights come after all others.
+// Puts the scene into the environment: `count` directional lights come after all others; 0 for who takes its light from the picture itself.
 void apply_environment(Scene& scene, Environment environment, uint32_t count, uint32_t seed);
 
 }  // namespace myriad::scenes

@@ -18,6 +18,7 @@ class App;
 namespace myriad::tools {
 
 void add_render(CLI::App& app);
+void add_reference(CLI::App& app);
 void add_bench(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_info(CLI::App& app);

@@ -5,12 +5,10 @@
 #include <memory>
 #include <optional>
 
-#include "scenes/camera_path.hpp"
-#include "scenes/moment.hpp"
 #include "tools/commands.hpp"
-#include "tools/environment_file.hpp"
 #include "tools/exposure.hpp"
 #include "tools/exr.hpp"
+#include "tools/load_scene.hpp"
 #include "tools/message.hpp"
 #include "tools/output_file.hpp"
 #include "tools/png.hpp"
@@ -36,42 +34,7 @@ std::vector<Shot> shots(const RenderOptions& options) {
     return out;
 }
 
-struct Loaded {
-    scenes::Scene scene;
-    scenes::Triangles triangles;
-    uint32_t camera = scenes::none;  // of scene.cameras; none: one that sees all
-    std::optional<scenes::CameraPath> path;
-};
-
-Loaded load(const RenderOptions& options, Progress& progress) {
-    Loaded loaded;
-    if (!options.camera_path.empty()) loaded.path.emplace(options.camera_path);
-    if (loaded.path)
-        for (const Shot& shot : shots(options)) loaded.path->at(*shot.seconds);  // refused now, not after an hour
-    loaded.scene = scenes::load(options.scene);
-    if (const auto& e = options.environment; !e.file.empty()) {
-        const double rotation = glm::radians(double(e.rotation.value_or(0)));
-        scenes::apply_environment(loaded.scene, read_environment(e.file, e.strength.value_or(1), rotation, loaded.scene.warnings),
-                                  e.lights.value_or(scenes::default_environment_lights), options.frame.seed);
-    } else {
-        scenes::apply_sky(loaded.scene, options.sky);
-    }
-    scenes::Playback playback{.loop = options.loop};
-    if (!options.animation.empty()) playback = scenes::pick_clips(loaded.scene, options.animation, options.loop);
-    else if (options.moves() && !loaded.scene.clips.empty()) playback.clips = {0};
-    if (options.moves() && playback.clips.empty() && !loaded.path)
-        throw InputError(options.scene + ": the scene has no animation, so all moments are the same; leave --time and --frames out, or give a --camera-path");
-    loaded.triangles = scenes::flatten(loaded.scene, options.instances, playback);
-    if (!loaded.path) loaded.camera = scenes::find_camera(loaded.scene, options.camera);
-    progress.clear();
-    for (const std::string& warning : loaded.scene.warnings) say("warning", warning);
-    return loaded;
-}
-
-std::string camera_name(const Loaded& loaded) {
-    if (loaded.path) return loaded.path->at(0).name;
-    return loaded.camera == scenes::none ? "(all in view)" : loaded.scene.cameras[loaded.camera].name;
-}
+uint32_t environment_lights(const RenderOptions& options) { return options.environment_lights.value_or(scenes::default_environment_lights); }
 
 // The exposure that is found for the first image is that of all: a film must not flicker.
 void write_images(const RenderOptions& options, RunRecord& run, Image& image, passes::Frame& frame, std::optional<uint32_t> number) {
@@ -97,7 +60,7 @@ void write_reports(const RenderOptions& options, RunRecord& run) {
 // Renders one shot after the other.
 class Film {
 public:
-    Film(const RenderOptions& options, RunRecord& run, engine::Device& device, Loaded& loaded, Progress& progress)
+    Film(const RenderOptions& options, RunRecord& run, engine::Device& device, LoadedScene& loaded, Progress& progress)
         : options_(options), run_(run), device_(device), loaded_(loaded), progress_(progress), settings_(options.frame), shots_(shots(options)),
           cameras_(loaded.scene.cameras) {
         settings_.progress = [this](const std::string& stage, double done) {
@@ -125,8 +88,7 @@ private:
             cameras_ = moment.cameras;
             moment_ = shot.seconds;
         }
-        if (loaded_.path) return loaded_.path->at(*shot.seconds);
-        return loaded_.camera == scenes::none ? scenes::framing_camera(loaded_.triangles) : cameras_[loaded_.camera];
+        return loaded_.camera_at(shot.seconds, cameras_);
     }
 
     void build() {
@@ -153,21 +115,11 @@ private:
 
     void write(const Shot& shot) {
         progress_.show("writing", 0);
-        const auto& e = options_.environment;
-        run_.settings = settings_json(settings_, frame_->vpl_bound(), !e.file.empty() || frame_->point_lights());
-        if (e.file.empty()) {
-            run_.settings["sky"] = choice_name(sky_choices(), options_.sky);
-        } else {
-            run_.settings["env"] = e.file, run_.settings["env_lights"] = e.lights.value_or(scenes::default_environment_lights);
-            run_.settings["env_rotation"] = shortest(e.rotation.value_or(0)), run_.settings["env_strength"] = shortest(e.strength.value_or(1));
-        }
+        const bool environment = !options_.environment.file.empty();
+        run_.settings = settings_json(settings_, frame_->vpl_bound(), environment || frame_->point_lights());
+        if (environment) run_.settings["env_lights"] = environment_lights(options_);
         if (shot.number) run_.settings["frame"] = *shot.number;
-        if (shot.seconds) run_.settings["seconds"] = *shot.seconds;
-        if (const auto& clips = loaded_.triangles.motion.playback.clips; !clips.empty()) {
-            std::string names;
-            for (const uint32_t clip : clips) names += (names.empty() ? "" : ", ") + loaded_.scene.clips[clip].name;
-            run_.settings["animation"] = names, run_.settings["loop"] = options_.loop;
-        }
+        add_scene_settings(run_.settings, options_, loaded_, shot.seconds);
         Image image = read_image(device_, *frame_, options_.layers);
         require_finite(image);
         run_.phase(shot.number ? "frame " + std::to_string(*shot.number) + ": write" : "write", [&] { write_images(options_, run_, image, *frame_, shot.number); });
@@ -176,7 +128,7 @@ private:
     const RenderOptions& options_;
     RunRecord& run_;
     engine::Device& device_;
-    Loaded& loaded_;
+    LoadedScene& loaded_;
     Progress& progress_;
     passes::FrameSettings settings_;
     const std::vector<Shot> shots_;
@@ -194,9 +146,14 @@ void render(const RenderOptions& options) {
     run.device = device->info();
 
     progress.show("loading " + options.scene, 0);
-    Loaded loaded = run.phase("load", [&] { return load(options, progress); });
+    std::vector<double> moments;
+    for (const Shot& shot : shots(options))
+        if (shot.seconds) moments.push_back(*shot.seconds);
+    LoadedScene loaded = run.phase("load", [&] {
+        return load_scene(options, options.instances, moments, environment_lights(options), options.frame.seed, progress);
+    });
     run.scene = loaded.scene.name;
-    run.camera = camera_name(loaded);
+    run.camera = loaded.camera_name();
 
     Film(options, run, *device, loaded, progress).make();
     write_reports(options, run);

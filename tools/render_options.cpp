@@ -47,19 +47,6 @@ void add_outputs(CLI::App& command, RenderOptions& o) {
     command.add_flag("-q,--quiet", o.quiet, "no table and no progress");
 }
 
-void add_environment(CLI::App& command, RenderOptions::Environment& e) {
-    command.add_option("--env", e.file, "an environment that surrounds and lights the scene: an equirectangular picture of radiance, .exr or .hdr;\n"
-                       "its middle lies along +x, what is right of it towards +z")->type_name("FILE");
-    add_parsed(command, "--env-lights", "N", std::to_string(scenes::default_environment_lights), "directional lights that stand for it,\neach with its map; more of them where it is brighter",
-               [&e](const std::string& text) { e.lights = uint32_t(parse_whole("--env-lights", text, 1, scenes::most_environment_lights)); });
-    add_parsed(command, "--env-rotation", "DEGREES", "0", "turns it about +y, anticlockwise seen from above", [&e](const std::string& text) {
-        e.rotation = parse_number("--env-rotation", text, -36000, 36000);
-    });
-    add_parsed(command, "--env-strength", "F", "1", "factor on its radiance", [&e](const std::string& text) {
-        e.strength = parse_number("--env-strength", text, 1e-9f, 1e9f);
-    });
-}
-
 void add_primary(CLI::App& command, RenderOptions& o) {
     add_choice(command, "--primary", o.frame.primary, primaries(),
                "how what the camera sees is found: a ray a pixel, exact; or points, drawn from the camera's\ncut through the tree of --samples");
@@ -109,9 +96,7 @@ void add_technique(CLI::App& command, RenderOptions& o) {
 }
 
 void add_movement(CLI::App& command, RenderOptions& o) {
-    command.add_option("--animation", o.animation, "of the scene: the clip that plays, or all of them at once; unless given the first, where a time is,\n"
-                       "and none where no time is: then the scene is at rest")->type_name("NAME|INDEX|all");
-    add_parsed(command, "--time", "S", "", "the moment to render, in seconds; 0 with --animation", [&o](const std::string& text) { o.time = parse_seconds("--time", text); });
+    add_moment(command, o);
     add_parsed(command, "--frames", "A-B", "", "frames A to B, frame i at i / fps seconds; FILE.exr becomes FILE.0000.exr and so on",
                [&o](const std::string& text) { o.frames = parse_frames("--frames", text); });
     add_parsed(command, "--fps", "N", "24", "frames a second, of --frames", [&o](const std::string& text) { o.fps = parse_rate("--fps", text); });
@@ -121,8 +106,6 @@ void add_movement(CLI::App& command, RenderOptions& o) {
                    o.rebuild = true;
                    o.frame.rebuild = text == "off" ? std::numeric_limits<float>::infinity() : parse_number("--rebuild", text, 0, 1e6f);
                });
-    add_choice(command, "--loop", o.loop, {{"on", true}, {"off", false}}, "clips begin again at their ends, or stay there");
-    command.add_option("--camera-path", o.camera_path, "the camera's way, in place of the scene's cameras: JSON, see scenes/README.md")->type_name("FILE");
 }
 
 const char* const footer =
@@ -130,7 +113,7 @@ const char* const footer =
     "directional irradiance in W/m^2; emission is radiance. Light that comes straight from emitting surfaces counts as\n"
     "indirect in the layers, for it is gathered from VPLs on them. Results are the same for the same seed and device.\n"
     "Exit status: 0 done; 2 bad usage or bad input; 3 no usable device, or out of memory.\n"
-    "\nBuilt-in scenes:";
+    "\n";
 
 }  // namespace
 
@@ -221,12 +204,6 @@ const Choices<uint32_t>& arities() {
     return choices;
 }
 
-const Choices<scenes::SkyChoice>& sky_choices() {
-    using scenes::SkyChoice;
-    static const Choices<SkyChoice> choices = {{"auto", SkyChoice::automatic}, {"on", SkyChoice::on}, {"off", SkyChoice::off}};
-    return choices;
-}
-
 const Choices<scenes::Sharing>& sharings() {
     using scenes::Sharing;
     static const Choices<Sharing> choices = {{"auto", Sharing::automatic}, {"shared", Sharing::always}, {"flat", Sharing::never}};
@@ -241,17 +218,16 @@ const std::vector<std::string>& layer_names() {
 std::shared_ptr<RenderOptions> add_render_options(CLI::App& command) {
     auto shared = std::make_shared<RenderOptions>();
     RenderOptions& o = *shared;
-    command.add_option("SCENE", o.scene, "a .gltf or .glb file, FILE#NAME or FILE#INDEX for another scene in it than its default, or builtin:NAME[?key=value&...]")->required()->type_name("");
+    add_scene(command, o);
     add_outputs(command, o);
     add_parsed(command, "--size", "WxH", std::to_string(o.frame.width) + "x" + std::to_string(o.frame.height), "pixels",
                [&o](const std::string& text) { std::tie(o.frame.width, o.frame.height) = parse_size("--size", text); });
-    command.add_option("--camera", o.camera, "of the scene; the first unless given, and one that sees all where there is none")
-        ->type_name("NAME|INDEX");
+    add_camera(command, o);
     add_movement(command, o);
-    add_choice(command, "--sky", o.sky, sky_choices(),
-               "light from above, of radiance 1, by " + std::to_string(scenes::default_sky_lights) +
-                   " directional lights;\nauto: for a scene that has no light and no emission");
-    add_environment(command, o.environment);
+    add_sky(command, o);
+    add_environment(command, o);
+    add_parsed(command, "--env-lights", "N", std::to_string(scenes::default_environment_lights), "directional lights that stand for it,\neach with its map; more of them where it is brighter",
+               [&o](const std::string& text) { o.environment_lights = uint32_t(parse_whole("--env-lights", text, 1, scenes::most_environment_lights)); });
     add_choice(command, "--instances", o.instances, sharings(),
                "meshes with several instances: stored once where that saves 16 MiB and a quarter of\nthe scene, wherever it can be, or written out; memory and time differ, the image does not");
     add_primary(command, o);
@@ -263,9 +239,7 @@ std::shared_ptr<RenderOptions> add_render_options(CLI::App& command) {
                [&o](const std::string& text) { o.cache = text == "off" ? "" : text; });
     command.add_option("--device", o.device.select, "part of a name, or an index, as myriad info lists them")->type_name("NAME|INDEX");
     add_whole(command, "--repeat", o.repeat, 1, 100000, "frames to render, all the same; times are then medians");
-    std::string text = footer;
-    for (const std::string& line : scenes::builtin_names()) text += "\n  builtin:" + line;
-    command.footer(text);
+    command.footer(footer + builtin_scenes());
     return shared;
 }
 
@@ -283,8 +257,7 @@ void check_outputs(const RenderOptions& o) {
     if (o.time && o.frames) throw InputError("--time and --frames both say which moment to render; give one of them");
     if (o.fps && !o.frames) throw InputError("--fps needs frames to be the rate of; name them with --frames");
     if (o.frames && o.repeat > 1) throw InputError("--frames renders a moment each, --repeat one moment again and again; give one of them");
-    if (!o.camera_path.empty() && !o.camera.empty()) throw InputError("--camera and --camera-path both say where to look from; give one of them");
-    if (!o.camera_path.empty() && !o.time && !o.frames) throw InputError("--camera-path is a way in time; say which moment with --time, or which with --frames");
+    check_scene(o, o.frames.has_value());
     if (o.rebuild && !o.moves())
         throw InputError("--rebuild is about a scene that moves; play a clip, with --frames, --time or --animation");
     if (o.frame.visibility == passes::Visibility::megaviews && o.frame.maps.update != passes::CutUpdate::basic)
@@ -305,13 +278,9 @@ void check_outputs(const RenderOptions& o) {
         throw InputError("--tree svo draws no maps for the lights of an environment; give --tree bsh with --env");
     if (o.primary_pixels && o.frame.primary != passes::Primary::points)
         throw InputError("--primary-pixels is about points, and rays have no size; give --primary points with it");
-    const RenderOptions::Environment& e = o.environment;
-    if (e.file.empty())
-        for (const auto& [given, name] : {std::pair(e.lights.has_value(), "--env-lights"), {e.rotation.has_value(), "--env-rotation"},
-                                          {e.strength.has_value(), "--env-strength"}})
-            if (given) throw InputError(std::string(name) + " is about an environment, and there is none; name one with --env FILE");
-    if (!e.file.empty() && o.sky == scenes::SkyChoice::on) throw InputError("--sky on and --env both say what surrounds the scene; give one of them");
-    if (!e.file.empty() && (o.frame.visibility == passes::Visibility::brute || o.frame.visibility == passes::Visibility::ism))
+    if (o.environment.file.empty() && o.environment_lights)
+        throw InputError("--env-lights is about an environment, and there is none; name one with --env FILE");
+    if (!o.environment.file.empty() && (o.frame.visibility == passes::Visibility::brute || o.frame.visibility == passes::Visibility::ism))
         throw InputError("--visibility " + choice_name(visibilities(), o.frame.visibility) +
                          " draws no maps for the lights of an environment; give manylods, rays or none with --env");
     std::optional<uint32_t> first;

@@ -9,20 +9,13 @@
 #include <vector>
 
 #include "passes/frame.hpp"
-#include "scenes/sky.hpp"
 #include "tools/arguments.hpp"
+#include "tools/scene_options.hpp"
 
 namespace myriad::tools {
 
-struct RenderOptions {
-    std::string scene, camera;
-    scenes::SkyChoice sky = scenes::SkyChoice::automatic;
-    struct Environment {
-        std::string file;                // empty: none
-        std::optional<uint32_t> lights;  // absent: scenes::default_environment_lights
-        std::optional<float> rotation;   // degrees
-        std::optional<float> strength;
-    } environment;
+struct RenderOptions : SceneOptions {
+    std::optional<uint32_t> environment_lights;  // absent: scenes::default_environment_lights
     std::string exr, png, stats, trace;  // files; empty: not wanted
     std::vector<std::string> layers;     // of the EXR beside the beauty: some of layer_names()
     std::optional<float> exposure;       // absent: auto
@@ -34,9 +27,6 @@ struct RenderOptions {
     scenes::Sharing instances = scenes::Sharing::automatic;
     std::filesystem::path cache = engine::default_cache_folder();  // empty: none
     uint32_t repeat = 1;
-    std::string animation, camera_path;  // empty: none
-    bool loop = true;
-    std::optional<double> time;          // seconds; absent: the scene is at rest, unless `frames` says otherwise
     std::optional<std::pair<uint32_t, uint32_t>> frames;  // first and last; frame i is i / fps seconds in
     std::optional<double> fps;           // absent: usual_fps
     static constexpr double usual_fps = 24;
@@ -62,7 +52,6 @@ void parse_gather(const std::string& option, const std::string& text, passes::Fr
 // --tree: bsh, which is 0 levels, or svo:D.
 std::string show_tree(const passes::FrameSettings& settings);
 uint32_t parse_tree(const std::string& option, const std::string& text);
-const Choices<scenes::SkyChoice>& sky_choices();
 const Choices<scenes::Sharing>& sharings();
 const std::vector<std::string>& layer_names();
 

@@ -1,0 +1,38 @@
+// The options that say what is looked at: a scene, its surroundings, its moment and the camera. Commands that make images share them.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "scenes/sky.hpp"
+#include "tools/arguments.hpp"
+
+namespace myriad::tools {
+
+struct SceneOptions {
+    std::string scene, camera;
+    scenes::SkyChoice sky = scenes::SkyChoice::automatic;
+    struct Environment {
+        std::string file;                // empty: none
+        std::optional<float> rotation;   // degrees
+        std::optional<float> strength;
+    } environment;
+    std::string animation, camera_path;  // empty: none
+    bool loop = true;
+    std::optional<double> time;          // seconds; absent: the scene is at rest
+};
+
+const Choices<scenes::SkyChoice>& sky_choices();
+
+// Each declares some of them on `command`.
+void add_scene(CLI::App& command, SceneOptions& options);
+void add_camera(CLI::App& command, SceneOptions& options);
+void add_moment(CLI::App& command, SceneOptions& options);
+void add_sky(CLI::App& command, SceneOptions& options);
+void add_environment(CLI::App& command, SceneOptions& options);
+// InputError where they contradict one another. `frames`: moments are named by other options.
+void check_scene(const SceneOptions& options, bool frames = false);
+// A line each of the built-in scenes, for a command's footer.
+std::string builtin_scenes();
+
+}  // namespace myriad::tools
