@@ -13,7 +13,7 @@ float largest(const vec3& v) { return std::max({v.x, v.y, v.z}); }
 
 // A lamp that touches a surface is not hidden by it: shadow rays to punctual lights end early by this part, as the device's do.
 constexpr float to_lamp = 0.9999f;
-// From the third reflection on paths end by chance, in proportion to what they have lost.
+// From the fourth reflection on paths end by chance, in proportion to what they have lost.
 constexpr uint32_t sure_bounces = 3;
 
 }  // namespace

@@ -16,7 +16,7 @@ public:
     // The next pair of dimensions, in [0, 1).
     glm::vec2 pair() {
         const uint32_t key = next();
-        const uint32_t index = reversed(scrambled(reversed(sample_), key));  // the sequence, shuffled for this pair
+        const uint32_t index = scrambled(reversed(sample_), key);  // the sequence, shuffled for this pair
         return {unit(scrambled(index, mixed(key ^ 1))), unit(scrambled(reversed(second(index)), mixed(key ^ 2)))};
     }
     float one() { return pair().x; }
@@ -40,7 +40,7 @@ private:
         x = (x & 0x33333333u) << 2 | (x >> 2 & 0x33333333u);
         return (x & 0x55555555u) << 1 | (x >> 1 & 0x55555555u);
     }
-    // Owen's scrambling of a number whose bits are in reverse, and back in the right order: each bit is flipped by those above it.
+    // Owen's scrambling of a number that is given with its bits in reverse: each bit is flipped, or not, by those above it.
     static uint32_t scrambled(uint32_t x, uint32_t key) {
         x ^= x * 0x3d20adeau;
         x += key;
