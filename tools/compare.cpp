@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/error.hpp"
+#include "tools/arguments.hpp"
 #include "tools/commands.hpp"
 #include "tools/exr.hpp"
 #include "tools/metrics.hpp"
@@ -18,8 +19,13 @@
 namespace myriad::tools {
 namespace {
 
+enum class DiffMetric { absolute, flip, hdr_flip };
+const Choices<DiffMetric> diff_metrics = {{"abs", DiffMetric::absolute}, {"FLIP", DiffMetric::flip}, {"HDR-FLIP", DiffMetric::hdr_flip}};
+
 struct Options {
     std::string reference, test, layer, diff;
+    DiffMetric diff_metric = DiffMetric::absolute;
+    float ppd = float(flip_ppd);
     std::vector<std::string> above, below;  // METRIC=VALUE
     double tolerance = 0.01;
     bool json = false;
@@ -64,7 +70,27 @@ struct Difference {
     nlohmann::ordered_json json;
 };
 
-Difference write_difference(const std::string& path, const Image& reference, const Image& test, const std::string& layer) {
+// FLIP is in [0, 1] whatever the image, and so is its map.
+Difference write_flip(const std::string& path, Flip kind, const Image& reference, const Image& test, const Options& options) {
+    const std::vector<float> errors = flip_errors(kind, reference, test, options.ppd, options.layer);
+    const std::string& name = choice_name(diff_metrics, options.diff_metric);
+    nlohmann::ordered_json json = {{"file", path}, {"metric", name}};
+    if (path.ends_with(".exr")) {
+        Image image;
+        image.width = reference.width, image.height = reference.height;
+        for (const char* channel : {"R", "G", "B"}) image.add(channel) = errors;
+        write_exr(path, image, ExrColour::full);
+        return {path + ": " + name, json};
+    }
+    write_png(path, heat_map(errors, reference.width, reference.height, 1));
+    json["scale"] = 1;
+    return {path + ": " + name + ", dark blue 0 to light yellow 1", json};
+}
+
+Difference write_difference(const Image& reference, const Image& test, const Options& options) {
+    const std::string &path = options.diff, &layer = options.layer;
+    if (options.diff_metric == DiffMetric::flip) return write_flip(path, Flip::ldr, reference, test, options);
+    if (options.diff_metric == DiffMetric::hdr_flip) return write_flip(path, Flip::hdr, reference, test, options);
     const Image difference = absolute_difference(reference, test, layer);
     if (path.ends_with(".exr")) {
         write_exr(path, difference, ExrColour::full);
@@ -89,7 +115,7 @@ nlohmann::ordered_json to_json(const Metrics& m) {
 
 void print_table(const Metrics& m) {
     for (const MetricName& metric : metric_names())
-        std::printf("%-8s %12.6g   %s\n", metric.name, m.*metric.value, metric.meaning);
+        std::printf("%-11s %12.6g   %s\n", metric.name, m.*metric.value, metric.meaning);
     std::printf("tolerance %g\n", m.tolerance);
 }
 
@@ -99,11 +125,14 @@ void run(const Options& options) {
     for (const std::string& text : options.below) limits.push_back(parse_limit(text, false));
     if (!options.diff.empty() && !options.diff.ends_with(".exr") && !options.diff.ends_with(".png"))
         throw InputError("--diff " + options.diff + ": unknown format; name an .exr or a .png file");
+    if (options.diff.empty() && options.diff_metric != DiffMetric::absolute)
+        throw InputError("--diff-metric says what a map shows, and none is asked for; name it with --diff FILE");
 
     const Image reference = read_exr(options.reference), test = read_exr(options.test);
-    const Metrics m = measure(reference, test, options.tolerance, options.layer);
+    Metrics m = measure(reference, test, options.tolerance, options.layer);
+    measure_flip(m, reference, test, options.ppd, options.layer);
     Difference difference;
-    if (!options.diff.empty()) difference = write_difference(options.diff, reference, test, options.layer);
+    if (!options.diff.empty()) difference = write_difference(reference, test, options);
 
     std::string failures;
     const auto fail = [&](const std::string& what) { failures += (failures.empty() ? "" : "; ") + what; };
@@ -131,7 +160,7 @@ void run(const Options& options) {
     }
     std::fflush(stdout);
     if (m.clipped > 0.5)
-        std::fprintf(stderr, "note: %.0f %% of the reference is above 1, where PSNR and SSIM see nothing\n", 100 * m.clipped);
+        std::fprintf(stderr, "note: %.0f %% of the reference is above 1, where PSNR, SSIM and FLIP see nothing\n", 100 * m.clipped);
     if (!failures.empty()) throw Error(Error::Kind::check_failed, "comparison failed: " + failures);
 }
 
@@ -143,7 +172,10 @@ void add_compare(CLI::App& app) {
     command->footer(
         "Formulas, r the reference and t the test, linear, over all pixels and R, G, B:\n"
         "  MSE mean (t-r)^2; relMSE mean (t-r)^2/(r^2+0.01); PSNR and SSIM on values clamped to [0,1] and encoded as sRGB,\n"
-        "  PSNR with peak 1 and at most 200 dB (identical images), SSIM (Wang 2004) on luma, 11x11 Gaussian windows.\n"
+        "  PSNR with peak 1 and at most 200 dB (identical images), SSIM (Wang 2004) on luma, 11x11 Gaussian windows;\n"
+        "  FLIP (Andersson 2020) on values clamped to [0,1], HDR-FLIP (Andersson 2021) the greatest FLIP of each pixel over exposures\n"
+        "  found from r, ACES tone map: means over pixels, 0 is not to be seen, 1 is green against blue; p95... the 95th percentile,\n"
+        "  nearest rank, over pixels (p95Abs: of the greatest |t-r| of R, G, B); failing and clipped: see the table.\n"
         "Exit status 1 when a limit is broken or either image holds NaN or Inf (metrics are then null in JSON).");
     command->add_option("REF", options->reference, "reference, EXR")->required();
     command->add_option("TEST", options->test, "image to judge, EXR")->required();
@@ -158,7 +190,10 @@ void add_compare(CLI::App& app) {
     command->add_option("--fail-below", options->below, "exit 1 when a metric is below a value (PSNR, SSIM); repeatable")
         ->type_name("METRIC=VALUE")
         ->allow_extra_args(false);
-    command->add_option("--diff", options->diff, "write |t-r|: linear (.exr) or as a heat map (.png)")->type_name("FILE");
+    command->add_option("--diff", options->diff, "write the error of each pixel: as it is (.exr) or as a heat map (.png)")->type_name("FILE");
+    add_choice(*command, "--diff-metric", options->diff_metric, diff_metrics, "what --diff shows");
+    add_number(*command, "--ppd", options->ppd, flip_least_ppd, flip_most_ppd,
+               "pixels per degree of the eye, for FLIP; unless given, 0.7 m before a screen of 0.7 m and 3840 pixels");
     command->add_flag("--json", options->json, "print one JSON object");
     command->callback([options] { run(*options); });
 }

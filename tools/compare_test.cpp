@@ -74,12 +74,13 @@ TEST_F(compare_command, identical_images_have_a_number_for_psnr) {
 
 TEST_F(compare_command, table_names_every_metric) {
     const std::string table = compare({r, t}).out;
-    for (const char* name : {"relMSE", "MSE", "PSNR", "SSIM", "MAE", "maxAbs", "p95Abs", "failing", "tolerance"})
+    for (const char* name :
+         {"relMSE", "MSE", "PSNR", "SSIM", "FLIP", "p95FLIP", "HDR-FLIP", "p95HDR-FLIP", "MAE", "maxAbs", "p95Abs", "failing", "tolerance"})
         EXPECT_TRUE(contains(table, name)) << name;
 }
 
 TEST_F(compare_command, each_limit_can_fail) {
-    for (const char* metric : {"relMSE", "MSE", "MAE", "maxAbs", "failing"}) {
+    for (const char* metric : {"relMSE", "MSE", "FLIP", "p95FLIP", "HDR-FLIP", "p95HDR-FLIP", "MAE", "maxAbs", "failing"}) {
         const Outcome outcome = compare({"--fail-above", metric + std::string("=1e-6"), r, t});
         EXPECT_EQ(outcome.status, 1) << metric;
         EXPECT_TRUE(contains(outcome.message, metric)) << outcome.message;
@@ -88,6 +89,16 @@ TEST_F(compare_command, each_limit_can_fail) {
     for (const char* limit : {"SSIM=0.9999", "PSNR=100"}) {
         EXPECT_EQ(compare({r, t, "--fail-below", limit}).status, 1) << limit;
         EXPECT_EQ(compare({r, r, "--fail-below", limit}).status, 0) << limit;
+    }
+    Image image = read_exr(r);
+    for (auto& channel : image.channels)
+        for (float& v : channel.values) v += 1;
+    const std::string brighter = folder / "brighter.exr";
+    write_exr(brighter, image, ExrColour::full);
+    for (const char* metric : {"p95Abs", "clipped"}) {
+        const std::string limit = metric + std::string("=0.5");
+        EXPECT_EQ(compare({brighter, r, "--fail-above", limit}).status, 1) << metric;
+        EXPECT_EQ(compare({r, t, "--fail-above", limit}).status, 0) << metric;
     }
     const Outcome two = compare({r, t, "--json", "--fail-above", "MSE=1", "--fail-above", "maxAbs=0.1", "--fail-below", "SSIM=1"});
     EXPECT_EQ(two.status, 1);
@@ -106,6 +117,7 @@ TEST_F(compare_command, non_finite_values_fail_without_a_limit) {
         EXPECT_EQ(outcome.status, 1);
         EXPECT_TRUE(contains(outcome.message, "1 NaN and 1 Inf") && contains(outcome.message, "1,1")) << outcome.message;
         EXPECT_TRUE(outcome.json()["MSE"].is_null());
+        EXPECT_TRUE(outcome.json()["FLIP"].is_null());
     }
     EXPECT_EQ(compare({r, bad, "--json"}).json()["nonFinite"]["test"]["NaN"], 1);
 }
@@ -120,6 +132,9 @@ TEST_F(compare_command, bad_usage_and_bad_input) {
     EXPECT_EQ(compare({r, t, "--unheard-of"}).status, 2);
     EXPECT_EQ(compare({r, t, "--layer", "direct"}).status, 2);
     EXPECT_EQ(compare({r, t, "--diff", "d.jpg"}).status, 2);
+    EXPECT_EQ(compare({r, t, "--diff-metric", "FLIP"}).status, 2) << "of no --diff";
+    EXPECT_EQ(compare({r, t, "--diff", "d.png", "--diff-metric", "SSIM"}).status, 2);
+    for (const char* ppd : {"0", "-67", "nan", "1001"}) EXPECT_EQ(compare({r, t, "--ppd", ppd}).status, 2) << ppd;
     EXPECT_EQ(compare({r, folder / "none.exr"}).status, 2);
 }
 
@@ -142,6 +157,27 @@ TEST_F(compare_command, difference_images) {
     EXPECT_EQ(compare({r, t, "--json", "--diff", png}).json()["diff"]["scale"], 0.25);
     EXPECT_EQ(compare({r, bad, "--diff", png}).status, 1) << "and the picture is written";
     EXPECT_EQ(read_png(png).rgb[17 * 3 + 2], 255) << "NaN is white";
+}
+
+TEST_F(compare_command, maps_of_flip) {
+    const std::string exr = folder / "d.exr", png = folder / "d.png";
+    for (const std::string metric : {"FLIP", "HDR-FLIP"}) {
+        const auto json = compare({r, t, "--json", "--diff", exr, "--diff-metric", metric}).json();
+        EXPECT_EQ(json["diff"]["metric"], metric);
+        double sum = 0;
+        const Image map = read_exr(exr);
+        for (float v : map.find("G")->values) sum += v;
+        EXPECT_NEAR(double(json[metric]), sum / 192, 1e-6) << "the metric is the map's mean";
+        const auto drawn = compare({r, t, "--json", "--diff", png, "--diff-metric", metric}).json();
+        EXPECT_EQ(drawn["diff"]["scale"], 1);
+        const Picture picture = read_png(png);
+        EXPECT_GT(picture.rgb[50 * 3], picture.rgb[191 * 3]) << "brighter where the error is";
+        EXPECT_EQ(compare({r, bad, "--diff", png, "--diff-metric", metric}).status, 1);
+        EXPECT_EQ(read_png(png).rgb[17 * 3], 255) << "NaN is white";
+        EXPECT_LT(read_png(png).rgb[100 * 3], 255);
+    }
+    EXPECT_GT(double(compare({r, t, "--json", "--ppd", "30"}).json()["p95FLIP"]), 0);
+    EXPECT_NE(compare({r, t, "--json", "--ppd", "30"}).json()["FLIP"], compare({r, t, "--json"}).json()["FLIP"]);
 }
 
 }  // namespace

@@ -18,6 +18,10 @@ constexpr MetricName names[] = {
     {"MSE", &Metrics::mse, "mean (t-r)^2"},
     {"PSNR", &Metrics::psnr, "dB, clamped sRGB, peak 1, at most 200"},
     {"SSIM", &Metrics::ssim, "clamped sRGB luma, 1 is identical"},
+    {"FLIP", &Metrics::flip, "visible difference, clamped to [0,1], mean"},
+    {"p95FLIP", &Metrics::p95_flip, "its 95th percentile over pixels"},
+    {"HDR-FLIP", &Metrics::hdr_flip, "the greatest over exposures, mean"},
+    {"p95HDR-FLIP", &Metrics::p95_hdr_flip, "its 95th percentile over pixels"},
     {"MAE", &Metrics::mae, "mean |t-r|"},
     {"maxAbs", &Metrics::max_abs, "max |t-r|"},
     {"p95Abs", &Metrics::p95_abs, "95th percentile of |t-r| over pixels"},
@@ -146,6 +150,31 @@ Metrics measure(const Image& reference, const Image& test, double tolerance, std
     m.p95_abs = percentile(std::move(greatest), 0.95);
     m.ssim = mean_ssim(luma_r, luma_t, reference.width, reference.height);
     return m;
+}
+
+std::vector<float> flip_errors(Flip kind, const Image& reference, const Image& test, double ppd, std::string_view layer) {
+    require_same_size(reference, test);
+    const Planes r = planes_of(reference, layer), t = planes_of(test, layer);
+    const auto flip = kind == Flip::ldr ? ldr_flip : hdr_flip;
+    std::vector<float> errors = flip({r[0], r[1], r[2]}, {t[0], t[1], t[2]}, reference.width, reference.height, ppd);
+    for (const Planes& planes : {r, t})
+        for (const auto& plane : planes)
+            for (size_t i = 0; i < errors.size(); ++i)
+                if (!std::isfinite(plane[i])) errors[i] = std::numeric_limits<float>::quiet_NaN();
+    return errors;
+}
+
+void measure_flip(Metrics& metrics, const Image& reference, const Image& test, double ppd, std::string_view layer) {
+    if (!metrics.finite()) return;
+    const auto put = [&](Flip kind, double& mean, double& p95) {
+        std::vector<float> errors = flip_errors(kind, reference, test, ppd, layer);
+        mean = 0;
+        for (float error : errors) mean += error;
+        mean /= static_cast<double>(errors.size());
+        p95 = percentile(std::move(errors), 0.95);
+    };
+    put(Flip::ldr, metrics.flip, metrics.p95_flip);
+    put(Flip::hdr, metrics.hdr_flip, metrics.p95_hdr_flip);
 }
 
 Image absolute_difference(const Image& reference, const Image& test, std::string_view layer) {

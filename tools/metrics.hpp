@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "tools/flip.hpp"
 #include "tools/image.hpp"
 
 namespace myriad::tools {
@@ -28,15 +30,20 @@ struct Metrics {
     // Wang et al. 2004 on the luma 0.2126 R' + 0.7152 G' + 0.0722 B': Gaussian window 11x11, sigma 1.5, K1 = 0.01,
     // K2 = 0.03, L = 1, mean over the windows that lie inside the image. Below 11 pixels a side the window shrinks to it.
     double ssim = 0;
+    // How visible the difference is, in [0, 1]: tools/flip.hpp; the mean over pixels and the 95th percentile as below. By measure_flip,
+    // and NaN without it, for they take a hundred times as long as all the others.
+    double flip = not_measured, p95_flip = not_measured, hdr_flip = not_measured, p95_hdr_flip = not_measured;
     double mae = 0;      // mean of |t - r|
     double max_abs = 0;  // max of |t - r|
     double p95_abs = 0;  // 95th percentile, nearest rank, over pixels of the greatest |t - r| of the three channels
     double failing = 0;  // share of pixels whose greatest |t - r| exceeds `tolerance`
-    // Share of r above 1, to which PSNR and SSIM are blind: near 1 they say nothing.
+    // Share of r above 1, to which PSNR, SSIM and FLIP are blind: near 1 they say nothing.
     double clipped = 0;
 
     double tolerance = 0;
     NonFinite reference, test;
+
+    static constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 
     // NaN or Inf anywhere is a failure whatever the metrics, which are then all NaN.
     bool finite() const { return reference.total() + test.total() == 0; }
@@ -52,6 +59,13 @@ std::span<const MetricName> metric_names();
 
 // InputError when the sizes differ or an image lacks the layer (Image::rgb). `tolerance` is in the unit of the layer.
 Metrics measure(const Image& reference, const Image& test, double tolerance, std::string_view layer = "");
+
+// Adds FLIP and HDR-FLIP to what `measure` found of the same images; they stay NaN where these are not finite.
+void measure_flip(Metrics& metrics, const Image& reference, const Image& test, double ppd = flip_ppd, std::string_view layer = "");
+
+// The errors of each pixel by FLIP or HDR-FLIP, NaN where a value of either image is not finite. InputError as for measure.
+enum class Flip { ldr, hdr };
+std::vector<float> flip_errors(Flip kind, const Image& reference, const Image& test, double ppd = flip_ppd, std::string_view layer = "");
 
 // |t - r| as an image with channels R, G, B; errors as for measure.
 Image absolute_difference(const Image& reference, const Image& test, std::string_view layer = "");

@@ -118,6 +118,25 @@ TEST(metrics, rel_mse_is_not_symmetric_and_mse_is) {
     EXPECT_NE(measure(r, t, 0).rel_mse, measure(t, r, 0).rel_mse);
 }
 
+// Otherwise by flip_test.cpp.
+TEST(metrics, flip_is_measured_where_it_is_asked_for) {
+    const auto [r, t] = pattern(40, 30);
+    Metrics m = measure(r, t, 0);
+    EXPECT_TRUE(std::isnan(m.flip) && std::isnan(m.hdr_flip));
+    measure_flip(m, r, t);
+    EXPECT_NEAR(m.flip, 0.1167758, 1e-5);  // this and the next: NVIDIA's evaluator
+    EXPECT_NEAR(m.p95_flip, 0.1308104, 3e-5);
+    EXPECT_NEAR(m.hdr_flip, 0.1399386, 1e-5);
+    EXPECT_NEAR(m.p95_hdr_flip, 0.1903050, 3e-5);
+    Image bad = t;
+    bad.channels[1].values[7] = std::numeric_limits<float>::infinity();
+    m = measure(r, bad, 0);
+    measure_flip(m, r, bad);
+    EXPECT_TRUE(std::isnan(m.flip) && std::isnan(m.p95_hdr_flip));
+    const std::vector<float> errors = flip_errors(Flip::ldr, r, bad);
+    EXPECT_TRUE(std::isnan(errors[7]) && std::isfinite(errors[8]));
+}
+
 TEST(metrics, percentile_is_nearest_rank) {
     std::vector<float> values;
     for (int i = 20; i >= 1; --i) values.push_back(static_cast<float>(i));
@@ -162,6 +181,7 @@ TEST(metrics, refuses_images_that_do_not_match) {
     EXPECT_TRUE(contains(input_error([&] { absolute_difference(wide, r); }), "one size"));
     const std::string layer = input_error([&] { measure(r, r, 0, "direct"); });
     EXPECT_TRUE(contains(layer, "ref.exr") && contains(layer, "'direct'") && contains(layer, "R, G, B")) << layer;
+    EXPECT_TRUE(contains(input_error([&] { flip_errors(Flip::hdr, r, wide); }), "one size"));
     EXPECT_TRUE(contains(input_error([&] { measure(Image{}, Image{}, 0); }), "no pixels"));
 }
 
