@@ -1,10 +1,11 @@
-// `myriad compare REF.exr TEST.exr`: how far a test image is from its reference, and whether that is too far.
+// `myriad compare REF.exr TEST.exr`: how far a test image is from its reference, and whether that is too far;
+// `myriad compare --golden GOLDEN_DIR TEST_DIR`: the same of all images of a folder.
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,104 +14,35 @@
 #include "tools/arguments.hpp"
 #include "tools/commands.hpp"
 #include "tools/exr.hpp"
-#include "tools/metrics.hpp"
-#include "tools/png.hpp"
+#include "tools/goldens.hpp"
+#include "tools/judge.hpp"
+#include "tools/output_file.hpp"
+#include "tools/revision.hpp"
 
 namespace myriad::tools {
 namespace {
 
-enum class DiffMetric { absolute, flip, hdr_flip };
-const Choices<DiffMetric> diff_metrics = {{"abs", DiffMetric::absolute}, {"FLIP", DiffMetric::flip}, {"HDR-FLIP", DiffMetric::hdr_flip}};
-
 struct Options {
-    std::string reference, test, layer, diff;
+    std::vector<std::string> files;
+    std::string layer, diff, tolerance = "0.01";
+    std::vector<std::string> above, below;  // METRIC=VALUE
     DiffMetric diff_metric = DiffMetric::absolute;
     float ppd = float(flip_ppd);
-    std::vector<std::string> above, below;  // METRIC=VALUE
-    double tolerance = 0.01;
     bool json = false;
+
+    std::string golden, heat_maps, junit, reason;
+    bool all_maps = false, bless = false;
 };
 
-struct Limit {
-    const MetricName* metric;
-    double value;
-    bool above;  // fails above the value, or below it
-};
-
-Limit parse_limit(const std::string& text, bool above) {
-    const std::string option = above ? "--fail-above" : "--fail-below";
-    const size_t equals = text.find('=');
-    const std::string name = text.substr(0, equals);
-    std::string known;
-    for (const MetricName& metric : metric_names()) {
-        known += (known.empty() ? "" : ", ") + std::string(metric.name);
-        if (name != metric.name) continue;
-        const std::string number = equals == std::string::npos ? "" : text.substr(equals + 1);
-        char* end = nullptr;
-        const double value = std::strtod(number.c_str(), &end);
-        if (number.empty() || *end || !std::isfinite(value))
-            throw InputError(option + " " + text + ": no number after the metric; write " + name + "=VALUE");
-        return {&metric, value, above};
-    }
-    throw InputError(option + " " + text + ": unknown metric '" + name + "'; known are " + known);
+Comparison comparison_of(const Options& options) {
+    Comparison comparison{.layer = options.layer, .tolerance = parse_tolerance("--tolerance", options.tolerance), .ppd = options.ppd, .limits = {}};
+    for (const std::string& text : options.above) comparison.limits.push_back(parse_limit(text, true));
+    for (const std::string& text : options.below) comparison.limits.push_back(parse_limit(text, false));
+    return comparison;
 }
 
-// The greatest error of the map, in the unit of the layer: the 99th percentile, so that one firefly does not blacken the
-// rest; the maximum where 99 pixels in 100 are exact.
-double heat_scale(const std::vector<float>& values) {
-    std::vector<float> finite;
-    std::ranges::copy_if(values, std::back_inserter(finite), [](float v) { return std::isfinite(v); });
-    if (finite.empty()) return 0;
-    const double scale = percentile(finite, 0.99);
-    return scale > 0 ? scale : *std::ranges::max_element(finite);
-}
-
-struct Difference {
-    std::string text;
-    nlohmann::ordered_json json;
-};
-
-// FLIP is in [0, 1] whatever the image, and so is its map.
-Difference write_flip(const std::string& path, Flip kind, const Image& reference, const Image& test, const Options& options) {
-    const std::vector<float> errors = flip_errors(kind, reference, test, options.ppd, options.layer);
-    const std::string& name = choice_name(diff_metrics, options.diff_metric);
-    nlohmann::ordered_json json = {{"file", path}, {"metric", name}};
-    if (path.ends_with(".exr")) {
-        Image image;
-        image.width = reference.width, image.height = reference.height;
-        for (const char* channel : {"R", "G", "B"}) image.add(channel) = errors;
-        write_exr(path, image, ExrColour::full);
-        return {path + ": " + name, json};
-    }
-    write_png(path, heat_map(errors, reference.width, reference.height, 1));
-    json["scale"] = 1;
-    return {path + ": " + name + ", dark blue 0 to light yellow 1", json};
-}
-
-Difference write_difference(const Image& reference, const Image& test, const Options& options) {
-    const std::string &path = options.diff, &layer = options.layer;
-    if (options.diff_metric == DiffMetric::flip) return write_flip(path, Flip::ldr, reference, test, options);
-    if (options.diff_metric == DiffMetric::hdr_flip) return write_flip(path, Flip::hdr, reference, test, options);
-    const Image difference = absolute_difference(reference, test, layer);
-    if (path.ends_with(".exr")) {
-        write_exr(path, difference, ExrColour::full);
-        return {path + ": |t-r|, linear", {{"file", path}}};
-    }
-    const std::vector<float> values = greatest_channel(*difference.rgb());
-    const double scale = heat_scale(values);
-    write_png(path, heat_map(values, difference.width, difference.height, scale));
-    char text[96];
-    std::snprintf(text, sizeof text, ": max over channels of |t-r|, dark blue 0 to light yellow %.6g", scale);
-    return {path + text, {{"file", path}, {"scale", scale}}};
-}
-
-nlohmann::ordered_json to_json(const Metrics& m) {
-    nlohmann::ordered_json json;
-    for (const MetricName& metric : metric_names()) json[metric.name] = m.*metric.value;  // NaN prints as null
-    json["tolerance"] = m.tolerance;
-    for (auto [name, count] : {std::pair{"reference", &m.reference}, {"test", &m.test}})
-        json["nonFinite"][name] = {{"NaN", count->nan}, {"Inf", count->inf}};
-    return json;
+void print(const nlohmann::ordered_json& json) {
+    std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
 }
 
 void print_table(const Metrics& m) {
@@ -119,44 +51,27 @@ void print_table(const Metrics& m) {
     std::printf("tolerance %g\n", m.tolerance);
 }
 
-void run(const Options& options) {
-    std::vector<Limit> limits;  // bad usage is told before files are read
-    for (const std::string& text : options.above) limits.push_back(parse_limit(text, true));
-    for (const std::string& text : options.below) limits.push_back(parse_limit(text, false));
-    if (!options.diff.empty() && !options.diff.ends_with(".exr") && !options.diff.ends_with(".png"))
-        throw InputError("--diff " + options.diff + ": unknown format; name an .exr or a .png file");
-    if (options.diff.empty() && options.diff_metric != DiffMetric::absolute)
-        throw InputError("--diff-metric says what a map shows, and none is asked for; name it with --diff FILE");
+// ---- Two images ----
 
-    const Image reference = read_exr(options.reference), test = read_exr(options.test);
-    Metrics m = measure(reference, test, options.tolerance, options.layer);
-    measure_flip(m, reference, test, options.ppd, options.layer);
-    Difference difference;
-    if (!options.diff.empty()) difference = write_difference(reference, test, options);
+void compare_images(const Options& options, const Comparison& comparison) {
+    const Image reference = read_exr(options.files[0]), test = read_exr(options.files[1]);
+    const auto& [m, broken] = judge(reference, test, comparison);
+    ErrorMap map;
+    if (!options.diff.empty()) map = write_error_map(options.diff, reference, test, options.diff_metric, comparison);
 
     std::string failures;
-    const auto fail = [&](const std::string& what) { failures += (failures.empty() ? "" : "; ") + what; };
-    for (auto [path, count] : {std::pair{&options.reference, &m.reference}, {&options.test, &m.test}})
-        if (count->total())
-            fail("'" + *path + "' has " + std::to_string(count->nan) + " NaN and " + std::to_string(count->inf) +
-                 " Inf values, the first at pixel " + std::to_string(count->x) + "," + std::to_string(count->y));
-    for (const Limit& limit : limits) {
-        const double value = m.*limit.metric->value;
-        if (limit.above ? value <= limit.value : value >= limit.value) continue;  // NaN never holds
-        char text[96];
-        const char* bound = limit.above ? "at most" : "at least";
-        std::snprintf(text, sizeof text, "%s = %.6g is not %s %g", limit.metric->name, value, bound, limit.value);
-        fail(text);
-    }
-
+    for (const std::string& failure : broken) failures += (failures.empty() ? "" : "; ") + failure;
     if (options.json) {
         nlohmann::ordered_json json = to_json(m);
-        if (!options.diff.empty()) json["diff"] = difference.json;
+        if (!options.diff.empty()) {
+            json["diff"] = {{"file", options.diff}, {"metric", choice_name(diff_metrics, options.diff_metric)}};
+            if (map.scale > 0) json["diff"]["scale"] = map.scale;
+        }
         json["failed"] = !failures.empty();
-        std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+        print(json);
     } else {
         print_table(m);
-        if (!options.diff.empty()) std::printf("%s\n", difference.text.c_str());
+        if (!options.diff.empty()) std::printf("%s: %s\n", options.diff.c_str(), map.text.c_str());
     }
     std::fflush(stdout);
     if (m.clipped > 0.5)
@@ -164,24 +79,84 @@ void run(const Options& options) {
     if (!failures.empty()) throw Error(Error::Kind::check_failed, "comparison failed: " + failures);
 }
 
+// ---- Two folders ----
+
+void bless_folder(const Options& options, const Comparison& comparison) {
+    const std::string& tested = options.files[0];
+    // Where there are no goldens yet they are made; one that nobody rendered is not there to be judged.
+    if (std::filesystem::is_directory(options.golden))
+        for (const std::string& name : exr_names(options.golden))
+            if (!std::filesystem::exists(tested + "/" + name))
+                throw InputError("--bless: there is no '" + tested + "/" + name + "'; nothing is blessed, render it, or delete its golden");
+    const Blessing blessing{options.reason, std::string("myriad ") + git_revision};
+    const std::vector<std::string> moved = bless(options.golden, tested, exr_names(tested), comparison, blessing);
+    if (options.json) return print({{"blessed", moved}});
+    for (const std::string& name : moved) std::printf("blessed %s\n", name.c_str());
+    std::printf("%zu blessed; %s\n", moved.size(), moved.empty() ? "all are as they were" : (options.golden + "/blessed.log says why").c_str());
+}
+
+void compare_folders(const Options& options, const Comparison& comparison) {
+    const GoldenOptions how{comparison, options.heat_maps, options.all_maps, options.diff_metric};
+    const std::vector<GoldenResult> results = judge_goldens(options.golden, options.files[0], how);
+    if (!options.junit.empty()) write_text(options.junit, golden_junit(results));
+    if (options.json) print(golden_json(results, comparison.limits));
+    else std::fputs(golden_table(results, comparison.limits).c_str(), stdout);
+    std::fflush(stdout);
+    const auto failed = std::ranges::count_if(results, [](const GoldenResult& r) { return !r.passed(); });
+    if (failed)
+        throw Error(Error::Kind::check_failed, std::to_string(failed) + " of " + std::to_string(results.size()) + " images failed; the worst, '" +
+                                                   results[0].name + "': " + results[0].failures[0]);
+}
+
+void require_two_images(const Options& o) {
+    for (const auto& [given, name] : {std::pair(!o.heat_maps.empty(), "--heat-maps"), {o.all_maps, "--all-heat-maps"}, {!o.junit.empty(), "--junit"}, {o.bless, "--bless"}})
+        if (given) throw InputError(std::string(name) + " is about folders of images; name that of the goldens with --golden GOLDEN_DIR");
+    if (o.files.size() != 2) throw InputError("compare takes two images, REF.exr and TEST.exr, or --golden GOLDEN_DIR and TEST_DIR; " + std::to_string(o.files.size()) + " given");
+    if (o.diff.empty() && o.diff_metric != DiffMetric::absolute)
+        throw InputError("--diff-metric says what a map shows, and none is asked for; name it with --diff FILE");
+    if (!o.diff.empty()) require_map_name("--diff", o.diff);
+}
+
+void require_folders(const Options& o) {
+    if (o.files.size() != 1) throw InputError("--golden GOLDEN_DIR takes one folder beside it, TEST_DIR; " + std::to_string(o.files.size()) + " given");
+    if (!o.diff.empty()) throw InputError("--diff is about two images; for folders give --heat-maps DIR");
+    if (o.heat_maps.empty() && (o.all_maps || o.diff_metric != DiffMetric::absolute))
+        throw InputError(std::string(o.all_maps ? "--all-heat-maps" : "--diff-metric") + " is about maps, and none are asked for; name their folder with --heat-maps DIR");
+    if (o.bless && (!o.heat_maps.empty() || !o.junit.empty()))
+        throw InputError("--bless compares nothing that " + std::string(o.junit.empty() ? "--heat-maps could draw" : "--junit could tell") + "; compare first, without it");
+    if (!o.bless && o.above.empty() && o.below.empty())
+        throw InputError("no limit is given, and so nothing could fail; give --fail-above METRIC=VALUE, such as maxAbs=0 where nothing may differ");
+    if (!o.junit.empty()) require_writable(o.junit);
+}
+
+void run(const Options& options) {  // bad usage is told before files are read
+    const Comparison comparison = comparison_of(options);
+    if (options.golden.empty()) require_two_images(options), compare_images(options, comparison);
+    else require_folders(options), options.bless ? bless_folder(options, comparison) : compare_folders(options, comparison);
+}
+
 }  // namespace
 
 void add_compare(CLI::App& app) {
     auto options = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("compare", "How far an image is from its reference");
+    CLI::App* command = app.add_subcommand("compare", "How far an image is from its reference, or a folder of images from its goldens");
     command->footer(
         "Formulas, r the reference and t the test, linear, over all pixels and R, G, B:\n"
-        "  MSE mean (t-r)^2; relMSE mean (t-r)^2/(r^2+0.01); PSNR and SSIM on values clamped to [0,1] and encoded as sRGB,\n"
-        "  PSNR with peak 1 and at most 200 dB (identical images), SSIM (Wang 2004) on luma, 11x11 Gaussian windows;\n"
-        "  FLIP (Andersson 2020) on values clamped to [0,1], HDR-FLIP (Andersson 2021) the greatest FLIP of each pixel over exposures\n"
-        "  found from r, ACES tone map: means over pixels, 0 is not to be seen, 1 is green against blue; p95... the 95th percentile,\n"
-        "  nearest rank, over pixels (p95Abs: of the greatest |t-r| of R, G, B); failing and clipped: see the table.\n"
-        "Exit status 1 when a limit is broken or either image holds NaN or Inf (metrics are then null in JSON).");
-    command->add_option("REF", options->reference, "reference, EXR")->required();
-    command->add_option("TEST", options->test, "image to judge, EXR")->required();
+        "  MSE mean (t-r)^2; relMSE mean (t-r)^2/(r^2+0.01); MAE mean |t-r|; maxAbs max |t-r|; PSNR and SSIM on values clamped\n"
+        "  to [0,1] and encoded as sRGB, PSNR with peak 1 and at most 200 dB (identical images), SSIM (Wang 2004) on luma, 11x11\n"
+        "  Gaussian windows; FLIP (Andersson 2020) on values clamped to [0,1], HDR-FLIP (Andersson 2021) the greatest FLIP of\n"
+        "  each pixel over exposures found from r, ACES tone map: means over pixels, 0 is not to be seen, 1 is green against\n"
+        "  blue; p95Abs, p95FLIP, p95HDR-FLIP the 95th percentile, nearest rank, over pixels (p95Abs: of the greatest |t-r| of\n"
+        "  R, G, B); failing the share of pixels whose greatest |t-r| is beyond the tolerance; clipped the share of r above 1.\n"
+        "Folders: each .exr below GOLDEN_DIR against its namesake below TEST_DIR. Missing, extra and unreadable files and other\n"
+        "sizes fail; limits hold for every image. --bless replaces the goldens by what is in TEST_DIR, once all of it was read\n"
+        "and is finite, and appends date, reason, revision, files and how far they move to GOLDEN_DIR/blessed.log.\n"
+        "Exit status 1 when a limit is broken, an image holds NaN or Inf (metrics are then null in JSON), or one of a folder fails.");
+    // Which ones and how many is told by --golden.
+    command->add_option("FILES", options->files, "REF.exr and TEST.exr; or TEST_DIR")->type_name("")->expected(0, -1);
     command->add_option("--layer", options->layer, "layer to compare (direct, indirect, albedo, N, P, Z); beauty unless given");
-    command->add_option("--tolerance", options->tolerance, "|t-r| beyond which a pixel counts as failing")
-        ->check(CLI::NonNegativeNumber)
+    command->add_option("--tolerance", options->tolerance, "|t-r| beyond which a pixel counts as failing; P%: of the mean of r")
+        ->type_name("X|P%")
         ->capture_default_str();
     // One value an option, or the list would swallow the file names after it.
     command->add_option("--fail-above", options->above, "exit 1 when a metric is above a value; repeatable")
@@ -191,11 +166,19 @@ void add_compare(CLI::App& app) {
         ->type_name("METRIC=VALUE")
         ->allow_extra_args(false);
     command->add_option("--diff", options->diff, "write the error of each pixel: as it is (.exr) or as a heat map (.png)")->type_name("FILE");
-    add_choice(*command, "--diff-metric", options->diff_metric, diff_metrics, "what --diff shows");
+    add_choice(*command, "--diff-metric", options->diff_metric, diff_metrics, "what maps show");
     add_number(*command, "--ppd", options->ppd, flip_least_ppd, flip_most_ppd,
                "pixels per degree of the eye, for FLIP; unless given, 0.7 m before a screen of 0.7 m and 3840 pixels");
     command->add_flag("--json", options->json, "print one JSON object");
-    command->callback([options] { run(*options); });
+    command->add_option("--golden", options->golden, "folder of references; each image against its namesake in TEST_DIR")->type_name("GOLDEN_DIR");
+    command->add_option("--heat-maps", options->heat_maps, "folder for a heat map (.png) of each image that fails; made where it is absent")->type_name("DIR");
+    command->add_flag("--all-heat-maps", options->all_maps, "of those that pass, too");
+    command->add_option("--junit", options->junit, "write the outcome as JUnit XML, a test case an image")->type_name("FILE");
+    CLI::Option* bless = command->add_option("--bless", options->reason, "replace the goldens by what is tested, and log why")->type_name("REASON");
+    command->callback([options, bless] {
+        options->bless = bless->count() > 0;
+        run(*options);
+    });
 }
 
 }  // namespace myriad::tools
