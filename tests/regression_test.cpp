@@ -1,8 +1,12 @@
-// Small images that must not change unless someone says so: scene file or built-in, whole frame, against goldens/*.exr.
-//
-// After a change that is meant to be seen, look at the difference images (build folder, tests/regression), then
-//     MYRIAD_BLESS=1 build/bin/myriad_frame_tests --gtest_filter='Regression.*'
-// writes the goldens anew and says how far each moved; the new files are part of the change and are reviewed with it.
+// Small images that must not change unless someone says so: scene file or built-in, whole frame, against goldens/*.exr, judged by what
+// `myriad compare --golden` runs. The images stay in the build folder, tests/regression, with a heat map and the numbers of each that
+// fails. After a change that is meant to be seen, look at them, then
+//     build/bin/myriad compare --golden tests/goldens build/tests/regression --bless "why they change"
+// or, of some of the tests only,
+//     MYRIAD_BLESS="why they change" build/bin/myriad_frame_tests --gtest_filter='Regression.*'
+// writes the goldens anew and says in goldens/blessed.log how far each moved; both are part of the change and are reviewed with it.
+#include <CLI/CLI.hpp>
+
 #include <cmath>
 #include <filesystem>
 
@@ -12,10 +16,12 @@
 #include "passes/frame.hpp"
 #include "scenes/gltf/write.hpp"
 #include "tests/materials_scene.hpp"
+#include "tools/commands.hpp"
 #include "tools/exr.hpp"
-#include "tools/metrics.hpp"
+#include "tools/goldens.hpp"
 #include "tools/output_file.hpp"
 #include "tools/render_image.hpp"
+#include "tools/revision.hpp"
 #include "tools/temp_folder.hpp"
 
 namespace myriad::tests {
@@ -23,21 +29,23 @@ namespace {
 
 using nlohmann::json;
 using passes::Visibility;
-using tools::Image, tools::Metrics, tools::TempFolder, tools::contains;
+using tools::GoldenResult, tools::Image, tools::TempFolder, tools::contains;
 using Path = std::filesystem::path;
 
 // Images are compared as goldens are stored, in halves, so on one driver nothing may differ at all; nor did anything between Mesa
 // 22.3.6 and 25.0.7 when this was written. Devices may round 1/sqrt, pow and contracted sums in other ways: pixels on edges then see
 // another triangle, a few look-ups another texel. The limits leave room for that, and are a tenth of what 3 % of brightness or a wrong
 // 8 x 8 tile make (the negative tests below).
-constexpr double most_rel_mse = 5e-5;
-constexpr double most_failing = 0.004;   // share of pixels off by more than
-constexpr double tolerance = 0.02;       // of the mean of the golden
+constexpr const char* limits[] = {"relMSE=5e-5", "failing=0.004"};  // failing: share of pixels off by more than
+constexpr const char* tolerance = "2%";                              // of the mean of the golden
 
-struct Verdict {
-    std::string failure;  // empty: it passed
-    Metrics metrics;
-};
+// Images are written here, heat maps into a folder below.
+tools::GoldenOptions options(const Path& out) {
+    tools::GoldenOptions o{.comparison = {}, .heat_maps = out / "heat_maps"};
+    o.comparison.tolerance = tools::parse_tolerance("tolerance", tolerance);
+    for (const char* limit : limits) o.comparison.limits.push_back(tools::parse_limit(limit, true));
+    return o;
+}
 
 double mean(const Image& image) {
     double sum = 0;
@@ -47,30 +55,24 @@ double mean(const Image& image) {
     return sum / (3 * double(image.pixels()));
 }
 
-std::string bless_command() { return "MYRIAD_BLESS=1 " + std::filesystem::read_symlink("/proc/self/exe").string() + " --gtest_filter='Regression.*'"; }
-
-// Leaves the image, the difference and the numbers in `out` when it fails.
-Verdict judge(const Path& golden, const Image& image, const Path& out) {
+// Through a file, in halves, as goldens are. Leaves the numbers in `out` when it fails.
+GoldenResult judge(const Path& golden, const Image& image, const Path& out) {
     std::filesystem::create_directories(out);
-    const std::string stem = (out / golden.stem()).string();
-    tools::write_exr(stem + ".test.exr", image);
-    if (!std::filesystem::exists(golden))
-        return {"there is no " + golden.string() + "; look at " + stem + ".test.exr, and if it is right: " + bless_command(), {}};
-    const Image expected = tools::read_exr(golden), test = tools::read_exr(stem + ".test.exr");
-    if (expected.width != test.width || expected.height != test.height) return {golden.string() + " has another size; " + bless_command(), {}};
-    const Metrics m = tools::measure(expected, test, tolerance * mean(expected));
-    if (m.finite() && m.rel_mse <= most_rel_mse && m.failing <= most_failing) {
-        std::filesystem::remove(stem + ".test.exr");
-        return {"", m};
-    }
-    tools::write_exr(stem + ".difference.exr", tools::absolute_difference(expected, test), tools::ExrColour::full);
-    json numbers = {{"golden", golden.string()}, {"golden_driver", expected.metadata.count("driver") ? expected.metadata.at("driver") : "?"},
-                    {"limits", {{"relMSE", most_rel_mse}, {"failing", most_failing}}}};
-    for (const auto& name : tools::metric_names()) numbers["metrics"][name.name] = m.*name.value;
-    tools::write_text(stem + ".json", numbers.dump(2) + "\n");
-    return {golden.filename().string() + ": relMSE " + std::to_string(m.rel_mse) + ", failing " + std::to_string(m.failing) + ", not finite " +
-                std::to_string(m.test.total()) + "; see " + stem + ".difference.exr and .json",
-            m};
+    const Path name = golden.filename(), numbers = out / (golden.stem().string() + ".json");
+    tools::write_exr(out / name, image);
+    const GoldenResult result = tools::judge_golden(golden, out / name, name, options(out));
+    std::filesystem::remove(numbers);
+    if (result.heat_map.empty()) std::filesystem::remove(out / "heat_maps" / name.stem().replace_extension(".png"));
+    if (!result.passed()) tools::write_text(numbers, tools::golden_json({result}, options(out).comparison.limits).dump(2) + "\n");
+    return result;
+}
+
+std::string failure(const GoldenResult& result, const Path& out) {
+    std::string text;
+    for (const std::string& f : result.failures) text += f + "; ";
+    if (text.empty()) return text;
+    const std::string program = std::filesystem::read_symlink("/proc/self/exe");
+    return text + "see " + out.string() + ", and if it is right: MYRIAD_BLESS=\"why\" " + program + " --gtest_filter='Regression.*'";
 }
 
 // A court with two boxes, one of them turned and half sunk, a lamp and a point light: transforms, shared meshes, indices, emission
@@ -148,18 +150,20 @@ protected:
     void check(const std::string& name, const std::string& source, Visibility visibility) { check(name, scenes::load(source), visibility); }
     void check(const std::string& name, const scenes::Scene& scene, Visibility visibility) {
         const Image image = render(scene, visibility);
-        const Path golden = Path(MYRIAD_GOLDENS) / (name + ".exr");
-        if (const char* bless = std::getenv("MYRIAD_BLESS"); bless && bless == std::string("1")) {
-            const std::string was = std::filesystem::exists(golden) ? std::to_string(tools::measure(tools::read_exr(golden), image, 0).rel_mse) : "there was none";
-            tools::write_exr(golden, image);
+        const Path golden = Path(MYRIAD_GOLDENS) / (name + ".exr"), out = MYRIAD_REGRESSION_OUT;
+        const GoldenResult result = judge(golden, image, out);
+        if (const char* reason = std::getenv("MYRIAD_BLESS")) {
+            ASSERT_STRNE(reason, "1") << "say why the images change: MYRIAD_BLESS=\"softer shadows\"";
+            const std::string by = std::string("myriad ") + tools::git_revision + " on " + image.metadata.at("driver");
+            const bool moved = !tools::bless(MYRIAD_GOLDENS, out, {name + ".exr"}, options(out).comparison, {reason, by}).empty();
             EXPECT_LT(std::filesystem::file_size(golden), 60000u);
-            std::printf("blessed %s by %s; relMSE to the one before: %s\n", golden.c_str(), image.metadata.at("driver").c_str(), was.c_str());
-            GTEST_SKIP() << "blessed " << golden << ", not compared";
+            GTEST_SKIP() << (moved ? "blessed " : "left as it was ") << golden << ", not compared";
         }
-        const Verdict v = judge(golden, image, MYRIAD_REGRESSION_OUT);
-        EXPECT_EQ(v.failure, "");
-        RecordProperty("relMSE", std::to_string(v.metrics.rel_mse));
-        std::printf("%s: relMSE %.2g, failing %.4f\n", name.c_str(), v.metrics.rel_mse, v.metrics.failing);
+        EXPECT_EQ(failure(result, out), "");
+        if (!result.metrics) return;
+        RecordProperty("relMSE", std::to_string(result.metrics->rel_mse));
+        const tools::Metrics& m = *result.metrics;
+        std::printf("%s: relMSE %.2g, failing %.4f, FLIP %.4f\n", name.c_str(), m.rel_mse, m.failing, m.flip);
     }
 };
 
@@ -194,7 +198,7 @@ TEST_F(Regression, maps_know_the_holes) {
     EXPECT_LT(error, 1e-3);
 }
 
-// ---- The judge itself ----
+// ---- The judge itself, and the command that is one with it ----
 
 class Judge : public ::testing::Test {
 protected:
@@ -204,19 +208,38 @@ protected:
             std::vector<float>& plane = image.add(name);
             for (size_t i = 0; i < plane.size(); ++i) plane[i] = 0.2f + 0.1f * std::sin(float(i % 96) / 7) * std::cos(float(i / 96) / 5);
         }
+        std::filesystem::create_directory(folder / "goldens");
         tools::write_exr(golden, image);
     }
-    std::string failure(const Image& test) { return judge(golden, test, folder / "out").failure; }
+    GoldenResult result(const Image& test) { return judge(golden, test, folder / "out"); }
+    std::string failure(const Image& test) { return tests::failure(result(test), folder / "out"); }
     bool left(const char* name) { return std::filesystem::exists(folder / "out" / name); }
 
+    // The exit status of `myriad compare` with the same limits, of the image that was judged last.
+    int command() {
+        CLI::App app;
+        tools::add_compare(app);
+        std::vector<std::string> arguments = {"compare", "--golden", folder / "goldens", folder / "out", "--tolerance", tolerance};
+        for (const char* limit : limits) arguments.insert(arguments.end(), {"--fail-above", limit});
+        std::ranges::reverse(arguments);  // CLI11 takes them from the back
+        try {
+            app.parse(arguments);
+        } catch (const Error& e) {
+            return e.exit_status();
+        }
+        return 0;
+    }
+
     const TempFolder folder;
-    const Path golden = folder / "g.exr";
+    const Path golden = folder / "goldens" / "g.exr";
     Image image;
 };
 
 TEST_F(Judge, passes_the_same_image_through_halves) {
     EXPECT_EQ(failure(image), "");
-    EXPECT_FALSE(left("g.test.exr"));
+    EXPECT_NEAR(result(image).metrics->tolerance, 0.02 * mean(image), 1e-5);
+    EXPECT_FALSE(left("g.json") || left("heat_maps"));
+    EXPECT_EQ(command(), 0);
 }
 
 TEST_F(Judge, fails_perturbed_images_and_shows_them) {
@@ -225,24 +248,32 @@ TEST_F(Judge, fails_perturbed_images_and_shows_them) {
         for (float& v : channel.values) v *= 1.03f;
     for (size_t i = 0; i < 64; ++i) tile.channels[1].values[(20 + i / 8) * 96 + 30 + i % 8] += 0.01f;
     nan.channels[2].values[5] = std::nanf("");
-    for (const Image& test : {brighter, tile, nan}) EXPECT_TRUE(contains(failure(test), "difference.exr"));
-    EXPECT_TRUE(left("g.test.exr") && left("g.difference.exr"));
+    for (const Image& test : {brighter, tile, nan}) {
+        EXPECT_TRUE(contains(failure(test), "MYRIAD_BLESS"));
+        EXPECT_TRUE(left("g.exr") && left("heat_maps/g.png"));
+        EXPECT_EQ(command(), 1);
+        std::filesystem::remove_all(folder / "out" / "heat_maps");
+    }
     std::ifstream in(folder / "out" / "g.json");
-    EXPECT_GT(json::parse(in)["limits"]["relMSE"], 0);
+    const json numbers = json::parse(in);
+    EXPECT_EQ(numbers["limits"][0], "relMSE <= 5e-05");
+    EXPECT_EQ(numbers["images"][0]["kind"], "nonfinite");
 }
 
 TEST_F(Judge, fails_a_missing_golden_with_the_cure) {
     std::filesystem::remove(golden);
     const std::string text = failure(image);
-    EXPECT_TRUE(contains(text, "MYRIAD_BLESS=1") && contains(text, "g.test.exr")) << text;
-    EXPECT_TRUE(left("g.test.exr"));
+    EXPECT_TRUE(contains(text, "MYRIAD_BLESS") && contains(text, "no golden")) << text;
+    EXPECT_TRUE(left("g.exr"));
+    EXPECT_NE(command(), 0);
 }
 
 TEST_F(Judge, fails_another_size) {
     Image small;
     small.width = small.height = 8;
     for (const char* name : {"R", "G", "B"}) small.add(name);
-    EXPECT_TRUE(contains(failure(small), "another size"));
+    EXPECT_TRUE(contains(failure(small), "8x8 and its golden 96x64"));
+    EXPECT_EQ(command(), 1);
 }
 
 }  // namespace

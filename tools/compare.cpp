@@ -109,21 +109,27 @@ void compare_folders(const Options& options, const Comparison& comparison) {
 }
 
 void require_two_images(const Options& o) {
-    for (const auto& [given, name] : {std::pair(!o.heat_maps.empty(), "--heat-maps"), {o.all_maps, "--all-heat-maps"}, {!o.junit.empty(), "--junit"}, {o.bless, "--bless"}})
+    for (const auto& [given, name] : {std::pair(!o.heat_maps.empty(), "--heat-maps"), {o.all_maps, "--all-heat-maps"},
+                                      {!o.junit.empty(), "--junit"}, {o.bless, "--bless"}})
         if (given) throw InputError(std::string(name) + " is about folders of images; name that of the goldens with --golden GOLDEN_DIR");
-    if (o.files.size() != 2) throw InputError("compare takes two images, REF.exr and TEST.exr, or --golden GOLDEN_DIR and TEST_DIR; " + std::to_string(o.files.size()) + " given");
+    if (o.files.size() != 2)
+        throw InputError("compare takes two images, REF.exr and TEST.exr, or --golden GOLDEN_DIR and TEST_DIR; " +
+                         std::to_string(o.files.size()) + " given");
     if (o.diff.empty() && o.diff_metric != DiffMetric::absolute)
         throw InputError("--diff-metric says what a map shows, and none is asked for; name it with --diff FILE");
     if (!o.diff.empty()) require_map_name("--diff", o.diff);
 }
 
 void require_folders(const Options& o) {
-    if (o.files.size() != 1) throw InputError("--golden GOLDEN_DIR takes one folder beside it, TEST_DIR; " + std::to_string(o.files.size()) + " given");
+    if (o.files.size() != 1)
+        throw InputError("--golden GOLDEN_DIR takes one folder beside it, TEST_DIR; " + std::to_string(o.files.size()) + " given");
     if (!o.diff.empty()) throw InputError("--diff is about two images; for folders give --heat-maps DIR");
     if (o.heat_maps.empty() && (o.all_maps || o.diff_metric != DiffMetric::absolute))
-        throw InputError(std::string(o.all_maps ? "--all-heat-maps" : "--diff-metric") + " is about maps, and none are asked for; name their folder with --heat-maps DIR");
+        throw InputError(std::string(o.all_maps ? "--all-heat-maps" : "--diff-metric") +
+                         " is about maps, and none are asked for; name their folder with --heat-maps DIR");
     if (o.bless && (!o.heat_maps.empty() || !o.junit.empty()))
-        throw InputError("--bless compares nothing that " + std::string(o.junit.empty() ? "--heat-maps could draw" : "--junit could tell") + "; compare first, without it");
+        throw InputError("--bless compares nothing that " + std::string(o.junit.empty() ? "--heat-maps could draw" : "--junit could tell") +
+                         "; compare first, without it");
     if (!o.bless && o.above.empty() && o.below.empty())
         throw InputError("no limit is given, and so nothing could fail; give --fail-above METRIC=VALUE, such as maxAbs=0 where nothing may differ");
     if (!o.junit.empty()) require_writable(o.junit);
@@ -171,7 +177,8 @@ void add_compare(CLI::App& app) {
                "pixels per degree of the eye, for FLIP; unless given, 0.7 m before a screen of 0.7 m and 3840 pixels");
     command->add_flag("--json", options->json, "print one JSON object");
     command->add_option("--golden", options->golden, "folder of references; each image against its namesake in TEST_DIR")->type_name("GOLDEN_DIR");
-    command->add_option("--heat-maps", options->heat_maps, "folder for a heat map (.png) of each image that fails; made where it is absent")->type_name("DIR");
+    command->add_option("--heat-maps", options->heat_maps, "folder for a heat map (.png) of each image that fails; made where it is absent")
+        ->type_name("DIR");
     command->add_flag("--all-heat-maps", options->all_maps, "of those that pass, too");
     command->add_option("--junit", options->junit, "write the outcome as JUnit XML, a test case an image")->type_name("FILE");
     CLI::Option* bless = command->add_option("--bless", options->reason, "replace the goldens by what is tested, and log why")->type_name("REASON");

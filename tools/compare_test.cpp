@@ -134,6 +134,8 @@ TEST_F(compare_command, bad_usage_and_bad_input) {
     EXPECT_EQ(compare({r, t, "--diff", "d.jpg"}).status, 2);
     EXPECT_EQ(compare({r, t, "--diff-metric", "FLIP"}).status, 2) << "of no --diff";
     EXPECT_EQ(compare({r, t, "--diff", "d.png", "--diff-metric", "SSIM"}).status, 2);
+    for (const char* option : {"--heat-maps", "--junit", "--bless"})
+        EXPECT_TRUE(contains(compare({r, t, option, "x"}).message, "--golden")) << option;
     for (const char* ppd : {"0", "-67", "nan", "1001"}) EXPECT_EQ(compare({r, t, "--ppd", ppd}).status, 2) << ppd;
     EXPECT_EQ(compare({r, folder / "none.exr"}).status, 2);
 }

@@ -9,8 +9,6 @@
 #include <ctime>
 #include <fstream>
 #include <iterator>
-#include <map>
-#include <set>
 
 #include "engine/error.hpp"
 #include "tools/exr.hpp"
@@ -36,7 +34,8 @@ void make_folder(const fs::path& folder) {
 // A pipe would never end.
 void require_file(const fs::path& path) {
     std::error_code ignored;
-    if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored)) throw InputError("'" + path.string() + "' is no file; replace it by an image");
+    if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored))
+        throw InputError("'" + path.string() + "' is no file; replace it by an image");
 }
 
 Image read_golden(const fs::path& path) {
@@ -135,7 +134,8 @@ std::string moves(const fs::path& golden, const Image& test, const Comparison& c
     try {
         const Metrics m = judge(read_golden(golden), test, comparison).metrics;
         std::string text;
-        for (const MetricName* metric : columns(comparison.limits)) text += (text.empty() ? "" : ", ") + (metric->name + (" " + number(m.*metric->value)));
+        for (const MetricName* metric : columns(comparison.limits))
+            text += (text.empty() ? "" : ", ") + (metric->name + (" " + number(m.*metric->value)));
         return text;
     } catch (const InputError& e) {
         return std::string("not comparable to the one before: ") + e.what();
@@ -173,6 +173,7 @@ GoldenResult judge_golden(const fs::path& golden, const fs::path& test, const st
     } else {
         try {
             reference = read_golden(golden), image = read_golden(test);
+            result.golden_metadata = reference.metadata;
             const auto size = [](const Image& i) { return std::to_string(i.width) + "x" + std::to_string(i.height); };
             if (size(reference) != size(image)) {
                 fail("size", "it is " + size(image) + " and its golden " + size(reference));
@@ -243,6 +244,7 @@ nlohmann::ordered_json golden_json(const std::vector<GoldenResult>& results, con
         if (!r.passed()) image["kind"] = r.kind, image["failures"] = r.failures;
         if (r.metrics) image["metrics"] = to_json(*r.metrics);
         if (!r.heat_map.empty()) image["heatMap"] = r.heat_map.string();
+        if (!r.golden_metadata.empty()) image["goldenMetadata"] = r.golden_metadata;
         images.push_back(std::move(image));
     }
     json["limits"] = std::move(bounds);
@@ -279,14 +281,16 @@ std::string golden_junit(const std::vector<GoldenResult>& results) {
 std::vector<std::string> bless(const fs::path& golden, const fs::path& test, std::vector<std::string> names, const Comparison& comparison,
                                const Blessing& blessing) {
     const std::string reason = one_line(blessing.reason);
-    if (reason.empty()) throw InputError("--bless: no reason is given; write why the images are right as they are now, such as --bless \"softer shadows\"");
+    if (reason.empty())
+        throw InputError("--bless: no reason is given; write why the images are right as they are now, such as --bless \"softer shadows\"");
     std::string log = today() + "  " + blessing.by + "  " + reason + "\n";
     std::erase_if(names, [&](const std::string& name) {
         const fs::path path = test / name;
         const Image image = read_golden(path);
         for (const Image::Channel& channel : image.channels)
             if (!std::ranges::all_of(channel.values, [](float v) { return std::isfinite(v); }))
-                throw InputError("--bless: '" + path.string() + "' has values that are NaN or Inf in " + channel.name + "; nothing is blessed, render it right first");
+                throw InputError("--bless: '" + path.string() + "' has values that are NaN or Inf in " + channel.name +
+                                 "; nothing is blessed, render it right first");
         if (there(golden / name) && bytes_of(golden / name) == bytes_of(path)) return true;
         log += "  " + one_line(name) + ": " + moves(golden / name, image, comparison) + "\n";
         return false;

@@ -4,6 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,6 +26,7 @@ struct GoldenResult {
     std::vector<std::string> failures;  // sentences; none: it passes
     std::optional<Metrics> metrics;     // where both images could be compared
     std::filesystem::path heat_map;     // empty: there is none
+    std::map<std::string, std::string> golden_metadata;  // what made it: device, driver, settings
     double seconds = 0;                 // that it took
 
     bool passed() const { return failures.empty(); }

@@ -59,6 +59,7 @@ struct ErrorMap {
 
 // An .exr with the errors as they are, or a .png as a heat map; InputError for another ending, or as for `measure`.
 void require_map_name(const std::string& option, const std::string& path);
-ErrorMap write_error_map(const std::filesystem::path& path, const Image& reference, const Image& test, DiffMetric metric, const Comparison& comparison);
+ErrorMap write_error_map(const std::filesystem::path& path, const Image& reference, const Image& test, DiffMetric metric,
+                         const Comparison& comparison);
 
 }  // namespace myriad::tools
