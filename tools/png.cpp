@@ -55,8 +55,7 @@ Picture heat_map(std::span<const float> values, uint32_t width, uint32_t height,
     return picture;
 }
 
-void write_png(const std::filesystem::path& path, const Picture& picture) {
-    const std::string cannot = "cannot write '" + path.string() + "': ";
+std::vector<char> png_bytes(const Picture& picture, const std::string& cannot) {
     assert(picture.rgb.size() == size_t(picture.width) * picture.height * 3);
     Png png;
     png.width = picture.width;
@@ -69,7 +68,13 @@ void write_png(const std::filesystem::path& path, const Picture& picture) {
     png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
     std::vector<char> bytes(size);
     if (!png_image_write_to_memory(&png, bytes.data(), &size, 0, picture.rgb.data(), 0, nullptr)) fail();
-    write_text(path, {bytes.data(), size});
+    bytes.resize(size);
+    return bytes;
+}
+
+void write_png(const std::filesystem::path& path, const Picture& picture) {
+    const std::vector<char> bytes = png_bytes(picture, "cannot write '" + path.string() + "': ");
+    write_text(path, {bytes.data(), bytes.size()});
 }
 
 Picture read_png(const std::filesystem::path& path) {

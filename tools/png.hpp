@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "tools/image.hpp"
@@ -26,7 +27,9 @@ Picture to_picture(std::span<const uint32_t> rgba, uint32_t width, uint32_t heig
 // with red-green colour blindness.
 Picture heat_map(std::span<const float> values, uint32_t width, uint32_t height, double scale);
 
-// Writes with an sRGB chunk, atomically, same bytes for same picture. InputError when that is not possible.
+// A PNG file with an sRGB chunk, same bytes for same picture. InputError, which begins with `cannot`, when that is not possible.
+std::vector<char> png_bytes(const Picture& picture, const std::string& cannot = "cannot make a PNG: ");
+// Writes it, atomically. InputError when that is not possible.
 void write_png(const std::filesystem::path& path, const Picture& picture);
 
 // Any PNG as 8-bit sRGB, alpha over black. InputError when missing, damaged, no PNG, or above 2^28 pixels.
