@@ -142,6 +142,32 @@ TEST_F(command_line, bench_coverage) {
     for (const char* technique : {"manylods", "megaviews"}) EXPECT_LT(bias[technique + std::string(" full")], bias[technique + std::string(" exact")]);
 }
 
+// Which candidates are within the budget depends on the machine.
+TEST_F(command_line, bench_error) {
+    refuse(2, {"bench", "gather", "--report", "r.html"}, "--report is an option of bench error");
+    refuse(2, {"bench", "error", "--references", folder / "none"}, "there is no such folder");
+    const auto once = [&](const char* technique, const char* seconds) {
+        succeed({"bench", "error", "--scenes", "builtin:cornell", "--size", "32x18", "--samples", "9", "--techniques", technique, "--budgets", "0.02,0.3", "--reference-seconds", seconds, "--repeat", "1",
+                 "--references", folder / "", "--report", folder / "r.html", "--csv", folder / "r.csv", "--json", folder / "rows.json"});
+    };
+    once("brute", "0.3");
+    const std::string kept = folder / "builtin_cornell--32x18-1.exr";
+    const std::string reference = bytes_of(kept);
+    once("megaviews", "0.1");
+    EXPECT_EQ(bytes_of(kept), reference) << "made once";
+    size_t paths = 0, rows = 0;
+    for (const auto& row : rows_of(folder / "rows.json")) {
+        EXPECT_EQ(row["bench"], "error");
+        EXPECT_GT(row["error"]["relMSE"], 0);
+        EXPECT_GT(row["error"]["FLIP"], 0);
+        paths += row["technique"] == "path-tracer", ++rows;
+    }
+    EXPECT_GE(paths, 1u);
+    EXPECT_EQ(size_t(std::ranges::count(bytes_of(folder / "r.csv"), '\n')), 1 + rows);
+    EXPECT_TRUE(contains(bytes_of(folder / "r.html"), "builtin:cornell"));
+    EXPECT_TRUE(contains(bytes_of(folder / "r.html"), "data:image/png"));
+}
+
 TEST_F(command_line, bench_gather) {
     refuse(2, {"bench", "manylods", "--picks", "4"}, "--picks is an option of bench gather");
     refuse(2, {"bench", "gather", "--picks", "0"}, "--picks");

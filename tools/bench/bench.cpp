@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "tools/arguments.hpp"
 #include "tools/commands.hpp"
 #include "tools/output_file.hpp"
 
@@ -48,6 +49,8 @@ const std::vector<Bench>& benches() {
          {"--arity", "--map-sizes", "--levels", "--images"}, 16, 2.0f},
         {"coverage", "what nodes smaller than a texel cover: their middles, whole texels, or a share by dice; how much light each way of drawing loses", bench_coverage,
          {"--arity", "--levels", "--images"}, 16},
+        {"error", "seconds a frame against the error of the image, of every technique at its best, beside a path tracer", bench_error,
+         {"--scenes", "--techniques", "--budgets", "--references", "--reference-seconds", "--report", "--size", "--csv", "--bounces", "--arity"}},
         {"gather", "what pixels gather of many VPLs: all, subsets, some that are not culled, and what a light tree picks, with their errors", bench_gather,
          {"--arity", "--bounces", "--picks"}},
         {"sort", "radix sorts of keys with payload: the device's, in several shapes, against the host's", bench_sort, {"--items"}},
@@ -68,6 +71,7 @@ struct Arguments {
 void print_row(const BenchRow& row) {
     std::printf("%-20s %7llu views  %s%9.1f ms [%.1f … %.1f]", row.technique.c_str(), static_cast<unsigned long long>(row.views),
                 row.extrapolated ? "extrapolated " : "", row.ms.median(), *std::min_element(row.ms.ms.begin(), row.ms.ms.end()), *std::max_element(row.ms.ms.begin(), row.ms.ms.end()));
+    for (const auto& [name, value] : row.settings.items()) std::printf("  %s=%s", name.c_str(), (value.is_string() ? value.get<std::string>() : value.dump()).c_str());
     for (const auto& [name, samples] : row.stages) std::printf("  %s %.1f", name.c_str(), samples.median());
     for (const auto& [name, value] : row.counters) std::printf("  %s %.6g", name.c_str(), value);
     for (const auto& [name, value] : row.error) std::printf("  %s %.4g", name.c_str(), value);
@@ -126,7 +130,16 @@ void add_bench(CLI::App& app) {
     bench->add_option("--animation", o.animation, "manylods-fig8: the clip that plays, by name or index (the first)");
     bench->add_option("--frames", o.frames, "manylods-fig8: of the clip, 1/24 s each (48)")->check(CLI::Range(1u, 100000u));
     bench->add_option("--items", o.items, "sort: numbers of keys, separated by commas (65536,1048576,4194304)")->delimiter(',')->check(CLI::Range(1u, 1u << 26));
-    bench->add_option("--bounces", o.bounces, "gather: reflections of light before what is seen (1)")->check(CLI::Range(0u, 64u));
+    bench->add_option("--scenes", o.scenes, "error: scenes, separated by commas (--scene)")->delimiter(',');
+    bench->add_option("--techniques", o.techniques, "error: those that are tried beside the path tracer, separated by commas: manylods, megaviews, rays, ism, brute (all)")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"manylods", "megaviews", "rays", "ism", "brute"}));
+    bench->add_option("--budgets", o.budgets, "error: seconds a frame, separated by commas (0.5,1,2,5,10)")->delimiter(',')->check(CLI::Range(0.01, 1e4));
+    bench->add_option("--references", o.references, "error: a folder where path-traced references are kept between runs");
+    bench->add_option("--reference-seconds", o.reference_seconds, "error: that a path-traced reference takes (120)")->check(CLI::Range(0.1, 1e6));
+    bench->add_option("--report", o.report, "error: write an HTML file with plots, tables and pictures");
+    add_parsed(*bench, "--size", "WxH", "640x360", "error: pixels", [&o](const std::string& text) { std::tie(o.width, o.height) = parse_size("--size", text); });
+    bench->add_option("--bounces", o.bounces, "error, gather: reflections of light before what is seen (1)")->check(CLI::Range(0u, 64u));
     bench->add_option("--picks", o.picks, "gather: VPLs that a pixel gathers, separated by commas (4,16,64,256,1024)")->delimiter(',')->check(CLI::Range(1u, 4096u));
     bench->add_option("--depth", o.depth, "octree: levels below the root (10)")->check(CLI::Range(0u, 21u));
     bench->add_option("--csv", o.csv, "manylods-fig8: write a line for each frame; megaviews-views: for each row");

@@ -57,6 +57,13 @@ struct BenchOptions {
     std::vector<uint32_t> map_sizes, levels; // of maps' sides; of the scene's octree; empty: the experiment's own (megaviews-views: no octree)
     std::vector<std::string> distributions;  // of views; empty: all that the experiment has
     uint32_t measured = 65536;      // views: beyond that what draws each view for itself is extrapolated
+    std::vector<std::string> scenes;         // empty: `scene`
+    std::vector<std::string> techniques;     // empty: all
+    std::vector<double> budgets = {0.5, 1, 2, 5, 10};  // seconds a frame
+    std::string references;         // a folder; empty: they are not kept
+    double reference_seconds = 120;
+    uint32_t width = 640, height = 360;
+    std::string report;             // empty: not written
     std::string csv, plot, images;  // empty: not written
 };
 
@@ -90,6 +97,8 @@ void bench_megaviews(engine::Device& device, const BenchOptions& options, const 
 // bench/maps_error.cpp
 void bench_resolution(engine::Device& device, const BenchOptions& options, const RowSink& sink);
 void bench_coverage(engine::Device& device, const BenchOptions& options, const RowSink& sink);
+// bench/error.cpp
+void bench_error(engine::Device& device, const BenchOptions& options, const RowSink& sink);
 // bench/gather.cpp
 void bench_gather(engine::Device& device, const BenchOptions& options, const RowSink& sink);
 // bench/octree.cpp
