@@ -234,10 +234,20 @@ TEST_F(command_line, bench_octree) {
     EXPECT_EQ(rows[1]["counters"]["nodes_21"], rows[1]["counters"]["leaves"]);
     succeed({"bench", "octree", "--scene", "builtin:cornell", "--samples", "5", "--depth", "6", "--repeat", "2", "--json", folder / "cells.json"});
     const auto cells = rows_of(folder / "cells.json");
-    ASSERT_EQ(cells.size(), 3u);
+    ASSERT_EQ(cells.size(), 4u);
     EXPECT_EQ(cells[2]["technique"], "octree-triangles");
     EXPECT_GT(cells[2]["counters"]["pairs"], cells[2]["counters"]["leaves"]);
     EXPECT_GT(cells[2]["counters"]["nodes"], cells[2]["counters"]["leaves"]);
+    EXPECT_EQ(cells[3]["technique"], "scene-octree");
+    EXPECT_EQ(cells[3]["counters"]["leaves"], cells[2]["counters"]["leaves"]);
+    EXPECT_EQ(cells[3]["stages"].size(), 5u) << cells[3];
+    succeed({"bench", "octree", "--scene", "builtin:cornell", "--levels", "3,5", "--repeat", "1", "--json", folder / "levels.json"});
+    const auto levels = rows_of(folder / "levels.json");
+    ASSERT_EQ(levels.size(), 2u);
+    for (const auto& row : levels) {
+        EXPECT_EQ(row["technique"], "scene-octree");
+        EXPECT_EQ(row["bytes"]["tree"], 20 * row["counters"]["nodes"].get<uint64_t>() + 20 * (row["counters"]["nodes"].get<uint64_t>() - row["counters"]["leaves"].get<uint64_t>() + 1));
+    }
 }
 
 // Maps in the same time, diffuse and glossy; ISM has as few points as there are.

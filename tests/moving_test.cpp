@@ -160,13 +160,13 @@ TEST_F(MovingTest, an_octree_follows) {
         frame.move_to(moment);
         frame.render(scene.cameras[0]);
         EXPECT_EQ(frame.size().octree.pairs == pairs, seconds == 0);
-        EXPECT_EQ(std::ranges::count(frame.times(), "octree contents", &engine::PassTime::name), 1);
+        EXPECT_EQ(std::ranges::count(frame.times(), "octree leaves", &engine::PassTime::name), 1);
         const auto moved = image(frame);
         EXPECT_LT(difference(moved, image_made_at(moment, scene, triangles, s)), 0.08) << seconds;
         if (seconds == 0) EXPECT_LT(difference(moved, start), 1e-5);
         else EXPECT_GT(difference(moved, start), 0.1) << "not a test";
         frame.render(scene.cameras[0]);
-        EXPECT_EQ(std::ranges::count(frame.times(), "octree contents", &engine::PassTime::name), 0) << "nothing has moved since";
+        EXPECT_EQ(std::ranges::count(frame.times(), "octree leaves", &engine::PassTime::name), 0) << "nothing has moved since";
     }
 }
 

@@ -120,7 +120,7 @@ void Svo::build(engine::Recorder& recorder, const engine::Array<vec3>& positions
         octree.record(recorder, voxels.lists().state(), AppendLists::kept_word);
         octree.end(recorder);
         {
-            auto scope = recorder.scope("octree contents");
+            auto scope = recorder.scope("octree leaves");
             grid_.dispatch(recorder, leaves_, octree.state(), Octree::count_word + depth_ - 1, room_.inner, 1, [&] {
                 return SvoLeavesPush{.blocks = {recorder.write(blocks_).address}, .spheres = recorder.write(spheres_), .cones = recorder.write(cones_),
                                      .boxes = recorder.write(boxes_), .merged = recorder.write(builder_->merged), .octree = octree.read(recorder),
@@ -128,6 +128,9 @@ void Svo::build(engine::Recorder& recorder, const engine::Array<vec3>& positions
                                      .instances = shared_ ? recorder.read(*instances) : Instances{}, .opacity = asks_ ? opacity(recorder) : OpacityRef{},
                                      .cube = cube_, .instance_count = instance_count, .shape = shape};
             });
+        }
+        {
+            auto scope = recorder.scope("octree inner nodes");
             for (uint32_t level = depth_ - 1; level-- > 0;)
                 grid_.dispatch(recorder, inner_, octree.state(), Octree::count_word + level, room_.inner, 1, [&] {
                     return SvoInnerPush{.blocks = {recorder.write(blocks_).address}, .spheres = recorder.write(spheres_), .cones = recorder.write(cones_),

@@ -54,7 +54,7 @@ const std::vector<Bench>& benches() {
         {"gather", "what pixels gather of many VPLs: all, subsets, some that are not culled, and what a light tree picks, with their errors", bench_gather,
          {"--arity", "--bounces", "--picks"}},
         {"sort", "radix sorts of keys with payload: the device's, in several shapes, against the host's", bench_sort, {"--items"}},
-        {"octree", "a sparse octree over points of a scene's surface, built on the device and on the host", bench_octree, {"--depth"}},
+        {"octree", "sparse octrees over points of a scene's surface, built on the device and on the host, and over its triangles", bench_octree, {"--depth", "--levels"}},
         {"stability", "a scene scaled, far from the origin, and on a floor that is much larger: where images suffer", bench_stability, {"--arity"}},
     };
     return all;
@@ -149,7 +149,7 @@ void add_bench(CLI::App& app) {
     bench->add_option("--measured", o.measured, "megaviews-views: the most views that ManyLoDs draws; more are extrapolated (65536)")->check(CLI::Range(1u, 1u << 20));
     bench->add_option("--plot", o.plot, "manylods-fig8: draw the cuts' times over the frames, as SVG; megaviews-views: the maps' over views");
     bench->add_option("--map-sizes", o.map_sizes, "megaviews-resolution: texels a side, separated by commas (16,32,64,128,256)")->delimiter(',')->check(CLI::Range(2u, 1024u));
-    bench->add_option("--levels", o.levels, "of the scene's octree. megaviews-resolution: separated by commas (8,9,10,11); coverage, megaviews-views: one, of what MegaViews draws in place of samples")->delimiter(',')->check(CLI::Range(1u, 12u));
+    bench->add_option("--levels", o.levels, "of the scene's octree. megaviews-resolution: separated by commas (8,9,10,11); octree: such trees alone; coverage, megaviews-views: one, of what MegaViews draws in place of samples")->delimiter(',')->check(CLI::Range(1u, 12u));
     bench->add_option("--images", o.images, "coverage, manylods-ism, megaviews-resolution: a folder for the images that are compared, as EXR and PNG");
     bench->add_option("--device", arguments->device, "part of a device's name, or its index");
     bench->callback([arguments, bench] { run(*arguments, *bench); });

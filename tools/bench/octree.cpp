@@ -1,7 +1,8 @@
 // `myriad bench octree`: the octree over points on the scene's surface, built on the device (compute/octree) and native on the host. The host's tree is
 // compared with the device's before anything is timed. Stages: `keys` from points, `sort`, `nodes` of all levels, and `merge`, the plainest one: how many items
 // are below each node. `ms` is the first three. The row `octree-triangles` builds the tree of all cells that triangles meet (compute/voxels), which must be those that
-// a recursion on the host finds; its stage `voxels` is that search. `ms` is all four.
+// a recursion on the host finds; its stage `voxels` is that search. `ms` is all four. The row `scene-octree` is all that a scene's octree takes to build (compute/svo), with
+// what nodes hold; its stages are the passes of a frame that builds it. --levels asks for such rows alone.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -12,6 +13,7 @@
 #include "compute/kernels.hpp"
 #include "compute/octree/octree.hpp"
 #include "compute/surface_sampling/surface_sampling.hpp"
+#include "compute/svo/svo.hpp"
 #include "compute/voxels/voxels.hpp"
 #include "engine/transfer.hpp"
 #include "passes/geometry/geometry.hpp"
@@ -268,6 +270,41 @@ struct TriangleExperiment {
     }
 };
 
+// All of compute/svo. The first build finds out how long lists must be, as a first frame's does, and is not counted.
+void bench_scene_octree(engine::Device& device, const BenchOptions& options, const RowSink& sink, const compute::WorldTriangles& world, const passes::Geometry& geometry,
+                        uint32_t depth, const vec3& low, const vec3& high) {
+    BenchRow r;
+    r.bench = "octree";
+    r.scene = std::filesystem::path(options.scene.empty() ? "builtin:atrium" : options.scene).filename().string();
+    r.technique = "scene-octree";
+    r.settings = {{"triangles", world.count()}, {"levels", depth}};
+    device.reset_memory_peaks();
+    compute::Svo svo(device, world, depth, low, high);
+    engine::Recorder recorder(device);
+    for (uint32_t run = 0; run <= options.repeats; ++run) {
+        svo.build(recorder, geometry.positions(), geometry.triangles(), geometry.instances(), geometry.opacity());
+        const auto times = recorder.take_times();
+        if (run == 0) {
+            r.counters["first_tries"] = svo.size().tries;
+            continue;
+        }
+        double total = 0;
+        for (const engine::PassTime& t : times) {
+            const std::string prefix = "octree ";
+            r.stages[t.name.starts_with(prefix) ? t.name.substr(prefix.size()) : t.name].ms.push_back(t.gpu_ms);
+            total += t.gpu_ms;
+        }
+        r.ms.ms.push_back(total);
+    }
+    const compute::SvoSize& size = svo.size();
+    r.counters["pairs"] = double(size.pairs), r.counters["nodes"] = double(size.nodes), r.counters["leaves"] = double(size.leaves);
+    set_bytes(r, device);
+    r.bytes["tree"] = size.bytes();
+    r.bytes["a_leaf"] = compute::SvoSize{.nodes = 1, .leaves = 1}.bytes() - sizeof(SvoBlock);
+    r.bytes["an_inner_node"] = r.bytes["a_leaf"] + sizeof(SvoBlock);
+    sink(r);
+}
+
 }  // namespace
 
 void bench_octree(engine::Device& device, const BenchOptions& options, const RowSink& sink) {
@@ -275,28 +312,27 @@ void bench_octree(engine::Device& device, const BenchOptions& options, const Row
     scenes::Scene scene = scenes::load(source, options.seed);
     const scenes::Triangles triangles = scenes::flatten(scene);
     const passes::GeometryData data = passes::geometry_data(scene, triangles);
-    const compute::SurfaceSampling sampling = compute::sample_surface(data.world, options.log2_samples, options.seed);
+    const compute::SurfaceSampling sampling = compute::sample_surface(data.world, options.levels.empty() ? options.log2_samples : 0, options.seed);
     if (sampling.empty()) throw InputError("\"" + source + "\" has no surface to sample; give another --scene");
-    std::vector<vec4> points;
-    for (const SurfaceSample& s : sampling.samples) {
-        const Corners c = data.world.corners(s.triangle);
-        points.emplace_back((1 - s.u - s.v) * c.p0 + s.u * c.p1 + s.v * c.p2, 0);
-    }
-    vec3 least(INFINITY), most(-INFINITY);
-    data.world.for_each([&](uint32_t, uint32_t, const Corners& c) {
-        if (!voxel_is_finite(c.p0) || !voxel_is_finite(c.p1) || !voxel_is_finite(c.p2)) return;
-        least = min(least, min(c.p0, min(c.p1, c.p2))), most = max(most, max(c.p0, max(c.p1, c.p2)));
-    });
-    const OctreeCube cube = compute::octree_cube(least, most, options.depth);
-    std::printf("scene: %s, %zu points, %u levels below the root\n", source.c_str(), points.size(), options.depth);
-    const Experiment e{device, options, sink, points, cube};
-    e.on_device(e.native());
-    if (options.depth < 1 || options.depth > voxels_max_depth) {
-        std::printf("no tree of triangles: that takes 1 to %u levels\n", voxels_max_depth);
-        return;
+    if (options.levels.empty()) {
+        std::vector<vec4> points;
+        for (const SurfaceSample& s : sampling.samples) {
+            const Corners c = data.world.corners(s.triangle);
+            points.emplace_back((1 - s.u - s.v) * c.p0 + s.u * c.p1 + s.v * c.p2, 0);
+        }
+        const OctreeCube cube = compute::octree_cube(triangles.lo, triangles.hi, options.depth);
+        std::printf("scene: %s, %zu points, %u levels below the root\n", source.c_str(), points.size(), options.depth);
+        const Experiment e{device, options, sink, points, cube};
+        e.on_device(e.native());
+        if (options.depth < 1 || options.depth > voxels_max_depth) {
+            std::printf("no tree of triangles: that takes 1 to %u levels\n", voxels_max_depth);
+            return;
+        }
     }
     const passes::Geometry geometry(device, triangles, data);
-    TriangleExperiment{device, options, sink, data.world, geometry, cube}.run();
+    if (options.levels.empty()) TriangleExperiment{device, options, sink, data.world, geometry, compute::octree_cube(triangles.lo, triangles.hi, options.depth)}.run();
+    for (const uint32_t depth : options.levels.empty() ? std::vector{options.depth} : options.levels)
+        bench_scene_octree(device, options, sink, data.world, geometry, depth, triangles.lo, triangles.hi);
 }
 
 }  // namespace myriad::tools
