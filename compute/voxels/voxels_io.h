@@ -35,43 +35,76 @@ MYRIAD_FN VoxelTriangle voxel_triangle(Corners corners, OctreeCube cube, uint de
     return t;
 }
 
-// Whether an edge's cross product with a coordinate axis, in whose plane (u, v) are the other two coordinates, keeps the triangle apart from the cell of half side h around the
-// origin. `end` is a corner on the edge, `other` the one across.
-MYRIAD_FN bool voxel_axis_parts(float edge_u, float edge_v, float end_u, float end_v, float other_u, float other_v, float h) {
-    const float p = edge_u * end_v - edge_v * end_u, q = edge_u * other_v - edge_v * other_u;
-    const float r = h * (abs(edge_u) + abs(edge_v));
-    return min(p, q) > r || max(p, q) < -r;
+// Whether a triangle and closed cells meet, by the 13 axes that can part them (Akenine-Moeller 2001), for the eight children of a cell at once: what a child's middle
+// adds to the parent's projection is the same but for signs. Never no where they meet; yes too where they are closer than the margin. A triangle without area is the
+// segment that it is: the axes of its normal then part nothing, the others all.
+//
+// An edge's cross product with a coordinate axis, in whose plane (u, v) are the other two coordinates. `end` is a corner on the edge, `other` the one across; h: half a
+// child's side, of which the margin is none. Of a child at (u, v) = (+-h, +-h), those that are not parted: bits 0 to 3 for (+, +), (-, -), (+, -), (-, +).
+MYRIAD_FN uint voxel_axis_keeps(float edge_u, float edge_v, float end_u, float end_v, float other_u, float other_v, float h, float margin) {
+    const float p = edge_u * end_v - edge_v * end_u;
+    const float q = edge_u * other_v - edge_v * other_u;
+    const float r = (h + margin) * (abs(edge_u) + abs(edge_v));
+    const float low = min(p, q) - r;
+    const float high = max(p, q) + r;
+    const float same = (edge_u - edge_v) * h;
+    const float apart = (edge_u + edge_v) * h;
+    uint kept = 15u;
+    if (low > same || high < same) kept &= ~1u;
+    if (low > -same || high < -same) kept &= ~2u;
+    if (low > -apart || high < -apart) kept &= ~4u;
+    if (low > apart || high < apart) kept &= ~8u;
+    return kept;
 }
-MYRIAD_FN bool voxel_edge_parts(vec3 edge, vec3 end, vec3 other, float h) {
-    return voxel_axis_parts(edge.y, edge.z, end.y, end.z, other.y, other.z, h) || voxel_axis_parts(edge.z, edge.x, end.z, end.x, other.z, other.x, h) ||
-           voxel_axis_parts(edge.x, edge.y, end.x, end.y, other.x, other.y, h);
+// The octants that these four are, where u, v are y, z; z, x; and x, y.
+MYRIAD_FN uint voxel_octants(uint kept, uint both, uint neither, uint u_only, uint v_only) {
+    return ((kept & 1u) != 0u ? both : 0u) | ((kept & 2u) != 0u ? neither : 0u) | ((kept & 4u) != 0u ? u_only : 0u) | ((kept & 8u) != 0u ? v_only : 0u);
 }
-
-// Whether a triangle and a closed cell meet, by the 13 axes that can part them (Akenine-Moeller 2001). Never no where they do; yes too where they are closer than
-// the margin. A triangle without area is the segment that it is: the axes of its normal then part nothing, the others all.
-MYRIAD_FN bool voxel_overlaps(VoxelTriangle t, vec3 centre, float half_side) {
-    if (t.margin < 0.0f) return false;
-    const float h = half_side + t.margin;
-    const vec3 a = t.a - centre, b = t.b - centre, c = t.c - centre;
-    const vec3 least = min(a, min(b, c)), most = max(a, max(b, c));
-    if (max(least.x, max(least.y, least.z)) > h || min(most.x, min(most.y, most.z)) < -h) return false;
-    const vec3 ab = t.b - t.a, bc = t.c - t.b, ca = t.a - t.c;
-    const vec3 normal = cross(ab, bc);
-    // A needle's normal is what roundings leave of it: they are counted by themselves.
-    const float slack = voxel_sum(ab) * voxel_sum(bc) * voxel_largest(a) * 9.5367431640625e-7f;
-    if (abs(dot(normal, a)) > h * voxel_sum(normal) + slack) return false;
-    return !(voxel_edge_parts(ab, a, c, h) || voxel_edge_parts(bc, b, a, h) || voxel_edge_parts(ca, c, b, h));
+MYRIAD_FN uint voxel_edge_keeps(vec3 edge, vec3 end, vec3 other, float h, float margin) {
+    return voxel_octants(voxel_axis_keeps(edge.y, edge.z, end.y, end.z, other.y, other.z, h, margin), 0xc0u, 0x03u, 0x0cu, 0x30u) &
+           voxel_octants(voxel_axis_keeps(edge.z, edge.x, end.z, end.x, other.z, other.x, h, margin), 0xa0u, 0x05u, 0x50u, 0x0au) &
+           voxel_octants(voxel_axis_keeps(edge.x, edge.y, end.x, end.y, other.x, other.y, h, margin), 0x88u, 0x11u, 0x22u, 0x44u);
+}
+// Of a coordinate axis.
+MYRIAD_FN uint voxel_side_keeps(float least, float most, float h, float margin, uint above) {
+    uint kept = 0xffu;
+    if (most < -margin || least > 2.0f * h + margin) kept &= ~above;
+    if (least > margin || most < -2.0f * h - margin) kept &= above;
+    return kept;
 }
 
 // Which of a cell's eight children meet a triangle; `level` is the cell's.
 MYRIAD_FN uint voxel_children(VoxelTriangle t, uvec2 key, uint level, uint depth) {
-    const float side = float(1u << (depth - level - 1u));
-    const uvec3 cell = octree_cell_of(key);
-    uint found = 0u;
-    for (uint octant = 0u; octant < 8u; ++octant) {
-        const uvec3 child = cell * 2u + uvec3(octant & 1u, octant >> 1 & 1u, octant >> 2);
-        if (voxel_overlaps(t, (vec3(child) + 0.5f) * side, 0.5f * side)) found |= 1u << octant;
-    }
+    if (t.margin < 0.0f) return 0u;
+    const float h = 0.5f * float(1u << (depth - level - 1u));
+    const vec3 middle = (vec3(octree_cell_of(key)) * 2.0f + 1.0f) * (2.0f * h);
+    const vec3 a = t.a - middle;
+    const vec3 b = t.b - middle;
+    const vec3 c = t.c - middle;
+    const vec3 least = min(a, min(b, c));
+    const vec3 most = max(a, max(b, c));
+    uint found = voxel_side_keeps(least.x, most.x, h, t.margin, 0xaau) & voxel_side_keeps(least.y, most.y, h, t.margin, 0xccu) &
+                 voxel_side_keeps(least.z, most.z, h, t.margin, 0xf0u);
+    const vec3 ab = t.b - t.a;
+    const vec3 bc = t.c - t.b;
+    const vec3 ca = t.a - t.c;
+    found &= voxel_edge_keeps(ab, a, c, h, t.margin) & voxel_edge_keeps(bc, b, a, h, t.margin) & voxel_edge_keeps(ca, c, b, h, t.margin);
+    const vec3 normal = cross(ab, bc);
+    // A needle's normal is what roundings leave of it: they are counted by themselves.
+    const float slack = voxel_sum(ab) * voxel_sum(bc) * (voxel_largest(a) + h) * 9.5367431640625e-7f;
+    const float reach = (h + t.margin) * voxel_sum(normal) + slack;
+    const float d = normal.x * a.x + normal.y * a.y + normal.z * a.z;
+    const float same = (normal.x + normal.y) * h;
+    const float apart = (normal.x - normal.y) * h;
+    const float up = normal.z * h;
+    if (abs(d + same + up) > reach) found &= ~0x01u;
+    if (abs(d - apart + up) > reach) found &= ~0x02u;
+    if (abs(d + apart + up) > reach) found &= ~0x04u;
+    if (abs(d - same + up) > reach) found &= ~0x08u;
+    if (abs(d + same - up) > reach) found &= ~0x10u;
+    if (abs(d - apart - up) > reach) found &= ~0x20u;
+    if (abs(d + apart - up) > reach) found &= ~0x40u;
+    if (abs(d - same - up) > reach) found &= ~0x80u;
     return found;
 }
 MYRIAD_FN uvec2 voxel_child_key(uvec2 key, uint octant) { return uvec2(key.x << 3 | octant, key.y << 3 | key.x >> 29); }

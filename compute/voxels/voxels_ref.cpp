@@ -10,12 +10,8 @@ std::vector<Voxel> voxels_ref(const std::vector<Corners>& triangles, const Octre
         const VoxelTriangle t = voxel_triangle(triangles[i], cube, depth);
         const std::function<void(uint64_t, uint)> visit = [&](uint64_t key, uint level) {
             if (level == depth) return voxels.push_back({key, i});
-            for (uint64_t octant = 0; octant < 8; ++octant) {
-                const uint64_t child = key << 3 | octant;
-                const float side = float(1u << (depth - level - 1));
-                const uvec3 cell = octree_cell_of({uint(child), uint(child >> 32)});
-                if (voxel_overlaps(t, (vec3(cell) + 0.5f) * side, 0.5f * side)) visit(child, level + 1);
-            }
+            for (uint found = voxel_children(t, {uint(key), uint(key >> 32)}, level, depth), octant = 0; octant < 8; ++octant)
+                if (found >> octant & 1) visit(key << 3 | octant, level + 1);
         };
         visit(0, 0);
     }
