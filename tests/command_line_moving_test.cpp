@@ -67,9 +67,13 @@ TEST_F(command_line, cameras_go_their_ways) {
     TempFolder input;
     std::ofstream(input / "way.json") << R"({"camera_path": 1, "keys": [{"time": 0, "eye": [0, 0, 3], "target": [0, 0, 0]}, {"time": 1, "eye": [0, 0, 3], "target": [0, 9, 0]}]})";
     const Arguments render = {"render", moving_scene(input), "--size", "16x16", "--vpls", "0", "--sky", "off", "-q", "--camera-path", input / "way.json"};
-    succeed(render + Arguments{"-o", exr, "--frames", "0-1", "--fps", "1", "--animation", "0"});
-    EXPECT_GT(mean(folder / "a.0000.exr"), 0.5);
-    EXPECT_EQ(mean(folder / "a.0001.exr"), 0);
+    const std::string name = folder / "f%02d";
+    succeed(render + Arguments{"-o", name + ".exr", "--png", name + ".png", "--stats", name + ".json", "--frames", "0-1", "--fps", "1", "--animation", "0"});
+    EXPECT_EQ(folder.names(), (Arguments{"f00.exr", "f00.json", "f00.png", "f01.exr", "f01.json", "f01.png"}));
+    EXPECT_GT(mean(folder / "f00.exr"), 0.5);
+    EXPECT_EQ(mean(folder / "f01.exr"), 0);
+    const auto frames = nlohmann::json::parse(bytes_of(folder / "f01.json"))["frames"];
+    EXPECT_TRUE(frames.size() == 1 && frames[0]["frame"] == 1) << frames;
 }
 
 TEST_F(command_line, moments_that_make_no_sense) {
@@ -85,6 +89,10 @@ TEST_F(command_line, moments_that_make_no_sense) {
     refuse(2, moving + Arguments{"--time", "soon"}, "--time 'soon'");
     refuse(2, moving + Arguments{"--fps", "0", "--frames", "0-1"}, "--fps '0'");
     refuse(2, moving + Arguments{"--fps", "12"}, "--fps needs frames");
+    for (const char* name : {"%d.exr", "%4d.exr", "%04d%04d.exr", "100%_%04d.exr", "%04d%.exr", "%s.exr", "%00d.exr"})
+        refuse(2, tiny + Arguments{"-o", folder / name, "--frames", "0-1"}, "one %0Nd");
+    refuse(2, tiny + Arguments{"-o", folder / "%04d.exr"}, "--frames A-B");
+    refuse(2, tiny + Arguments{"-o", folder / "none/%04d.exr", "--frames", "0-1"}, "does not exist");
     refuse(2, moving + Arguments{"--fps", "12", "--time", "1"}, "--fps needs frames");
     refuse(2, moving + Arguments{"--camera-path", input / "none.json", "--time", "0"}, "none.json");
     refuse(2, moving + Arguments{"--camera-path", input / "way.json"}, "which moment");

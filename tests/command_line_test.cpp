@@ -23,7 +23,8 @@ TEST_F(command_line, help_names_every_option) {
                     "--vpls",    "--bounces",  "--map-size",          "--epsilon", "--samples", "--gather", "--gather-distance",     "--filter",
                     "--vpl-bound", "--bias",   "--exposure",          "--memory-limit",         "--stats",      "--trace",
                     "--aov",     "--cache",  "--instances",         "--sky",     "--device",   "--repeat", "--float", "--animation", "--time", "--frames", "--fps", "--loop", "--camera-path", "--rebuild", "--env", "--env-lights", "--env-rotation", "--env-strength", "--quiet",   "1:1",       "builtin:cornell", "W/sr"}},
-        {"compare", {"REF", "TEST", "--json", "--fail-above", "--fail-below", "--layer", "--diff", "--tolerance"}},
+        {"compare", {"REF", "TEST", "--json", "--fail-above", "--fail-below", "--layer", "--diff", "--diff-metric", "--ppd", "--tolerance", "--golden", "--heat-maps",
+                     "--all-heat-maps", "--junit", "--bless"}},
         {"bench", {"--json"}},
         {"convert", {"IN", "OUT", "--unit", "--up", "--crease", "--colors", "--seed", "--quiet", ".gltf", ".glb", ".obj", ".ply.gz", ".stl", ".fbx", ".dae", ".json", "builtin:NAME"}},
         {"info", {"--json", "--device"}}};

@@ -126,5 +126,16 @@ TEST(render_options, outputs_are_checked) {
     EXPECT_EQ(folder.names(), Names{"b"});
 }
 
+TEST(arguments, names_of_frames) {
+    EXPECT_EQ(numbered("a.exr", {}), "a.exr");
+    EXPECT_EQ(numbered("a.exr", 7), "a.0007.exr");
+    EXPECT_EQ(numbered("a.exr", 123456), "a.123456.exr");
+    EXPECT_EQ(numbered("d/%04d.exr", 7), "d/0007.exr");
+    EXPECT_EQ(numbered("d/f_%02d_x.png", 123), "d/f_123_x.png");
+    EXPECT_EQ(numbered("50%04d/a.exr", 1), "50%04d/a.0001.exr") << "folders are as they are";
+    EXPECT_TRUE(has_number("%01d.exr") && has_number("d/a%09d"));
+    for (const char* none : {"%4d.exr", "%d.exr", "%00d.exr", "%04i.exr", "%04", "%04d/a.exr", ""}) EXPECT_FALSE(has_number(none)) << none;
+}
+
 }  // namespace
 }  // namespace myriad::tools

@@ -113,8 +113,8 @@ void require_two_images(const Options& o) {
                                       {!o.junit.empty(), "--junit"}, {o.bless, "--bless"}})
         if (given) throw InputError(std::string(name) + " is about folders of images; name that of the goldens with --golden GOLDEN_DIR");
     if (o.files.size() != 2)
-        throw InputError("compare takes two images, REF.exr and TEST.exr, or --golden GOLDEN_DIR and TEST_DIR; " +
-                         std::to_string(o.files.size()) + " given");
+        throw InputError(std::string(o.files.empty() ? "REF is required" : o.files.size() == 1 ? "TEST is required" : "a file too many is given") +
+                         "; compare takes two images, REF.exr and TEST.exr, or --golden GOLDEN_DIR and TEST_DIR");
     if (o.diff.empty() && o.diff_metric != DiffMetric::absolute)
         throw InputError("--diff-metric says what a map shows, and none is asked for; name it with --diff FILE");
     if (!o.diff.empty()) require_map_name("--diff", o.diff);

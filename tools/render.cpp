@@ -53,7 +53,16 @@ void write_images(const RenderOptions& options, RunRecord& run, Image& image, pa
 }
 
 void write_reports(const RenderOptions& options, RunRecord& run) {
-    if (!options.stats.empty()) write_text(options.stats, stats_json(run)), run.files.push_back(options.stats);
+    if (has_number(options.stats)) {
+        for (const FrameRun& frame : run.frames) {
+            RunRecord one = run;
+            one.frames = {frame};
+            write_text(numbered(options.stats, frame.number), stats_json(one));
+        }
+        run.files.push_back(options.stats);
+    } else if (!options.stats.empty()) {
+        write_text(options.stats, stats_json(run)), run.files.push_back(options.stats);
+    }
     if (!options.trace.empty()) write_text(options.trace, trace_json(run)), run.files.push_back(options.trace);
 }
 

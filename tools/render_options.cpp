@@ -97,7 +97,9 @@ void add_technique(CLI::App& command, RenderOptions& o) {
 
 void add_movement(CLI::App& command, RenderOptions& o) {
     add_moment(command, o);
-    add_parsed(command, "--frames", "A-B", "", "frames A to B, frame i at i / fps seconds; FILE.exr becomes FILE.0000.exr and so on",
+    add_parsed(command, "--frames", "A-B", "", "frames A to B, frame i at i / fps seconds; FILE.exr becomes FILE.0000.exr and so on,\n"
+               "DIR/%04d.exr becomes DIR/0000.exr (%0Nd: N digits at least; once, in the name of the file), of -o, --png and --stats,\n"
+               "which is one file for all frames otherwise; folders must be there",
                [&o](const std::string& text) { o.frames = parse_frames("--frames", text); });
     add_parsed(command, "--fps", "N", "24", "frames a second, of --frames", [&o](const std::string& text) { o.fps = parse_rate("--fps", text); });
     add_parsed(command, "--rebuild", "off|GROWTH", "off", "builds the tree of --samples anew when deformation has made its spheres that many times as large as they were\n"
@@ -243,11 +245,39 @@ std::shared_ptr<RenderOptions> add_render_options(CLI::App& command) {
     return shared;
 }
 
+namespace {
+
+constexpr size_t conversion_size = 4;  // of "%04d"
+
+// Where the %0Nd begins, in the name of the file; npos: nowhere.
+size_t find_number(const std::string& path) {
+    for (size_t at = path.rfind('/') + 1; at + conversion_size <= path.size(); ++at)  // npos + 1 is 0
+        if (path[at] == '%' && path[at + 1] == '0' && path[at + 2] >= '1' && path[at + 2] <= '9' && path[at + 3] == 'd') return at;
+    return std::string::npos;
+}
+
+void check_numbered(const std::string& option, const std::string& path, bool frames) {
+    const size_t at = find_number(path), last = path.rfind('%');
+    if (at != std::string::npos && !frames)
+        throw InputError(option + " '" + path + "': the name has a place for the number of a frame, and one image is asked for; "
+                         "give --frames A-B, or a plain name");
+    if (!frames || last == std::string::npos || last < path.rfind('/') + 1) return;
+    if (at != last || path.find('%', path.rfind('/') + 1) != at)
+        throw InputError(option + " '" + path + "': a name of frames may have one %0Nd, N from 1 to 9, and no other %; write it like frame%04d.exr");
+}
+
+}  // namespace
+
+bool has_number(const std::string& path) { return find_number(path) != std::string::npos; }
+
 std::string numbered(const std::string& path, std::optional<uint32_t> number) {
     if (!number || path.empty()) return path;
     const std::string digits = std::to_string(*number);
+    const auto padded = [&](size_t least) { return std::string(digits.size() < least ? least - digits.size() : 0, '0') + digits; };
+    if (const size_t at = find_number(path); at != std::string::npos)
+        return path.substr(0, at) + padded(size_t(path[at + 2] - '0')) + path.substr(at + conversion_size);
     const size_t ending = path.rfind('.');
-    return path.substr(0, ending) + "." + std::string(digits.size() < 4 ? 4 - digits.size() : 0, '0') + digits + path.substr(ending);
+    return path.substr(0, ending) + "." + padded(4) + path.substr(ending);
 }
 
 void check_outputs(const RenderOptions& o) {
@@ -283,10 +313,14 @@ void check_outputs(const RenderOptions& o) {
     if (!o.environment.file.empty() && (o.frame.visibility == passes::Visibility::brute || o.frame.visibility == passes::Visibility::ism))
         throw InputError("--visibility " + choice_name(visibilities(), o.frame.visibility) +
                          " draws no maps for the lights of an environment; give manylods, rays or none with --env");
+    for (const auto& [option, path] : {std::pair("-o", o.exr), {"--png", o.png}}) check_numbered(option, path, o.frames.has_value());
+    if (has_number(o.stats)) check_numbered("--stats", o.stats, o.frames.has_value());
+    if (has_number(o.trace)) throw InputError("--trace '" + o.trace + "': a time line is one for all frames; give a plain name");
     std::optional<uint32_t> first;
     if (o.frames) first = o.frames->first;
     std::set<std::filesystem::path> seen;
-    for (const std::string& path : {numbered(o.exr, first), numbered(o.png, first), o.stats, o.trace}) {
+    const std::string stats = has_number(o.stats) ? numbered(o.stats, first) : o.stats;
+    for (const std::string& path : {numbered(o.exr, first), numbered(o.png, first), stats, o.trace}) {
         if (path.empty()) continue;
         require_writable(path);
         if (!seen.insert(std::filesystem::absolute(path).lexically_normal()).second)

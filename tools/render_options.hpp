@@ -58,8 +58,10 @@ const std::vector<std::string>& layer_names();
 // Declares the options on `command`; they hold their values once it was parsed and check_outputs has returned.
 std::shared_ptr<RenderOptions> add_render_options(CLI::App& command);
 
-// `path` as frame `number` has it, where several are rendered: its number before the ending, four digits at least.
+// `path` as frame `number` has it, where several are rendered: its number for a %0Nd in the name of the file, N digits at least; or
+// before the ending, four digits at least.
 std::string numbered(const std::string& path, std::optional<uint32_t> number);
+bool has_number(const std::string& path);  // whether the name of the file has a %0Nd, N from 1 to 9
 
 // InputError unless there is something to write and all of it can be written, each file under its own name.
 void check_outputs(const RenderOptions& options);
