@@ -29,6 +29,7 @@ struct ReferenceOptions : SceneOptions {
     std::string output;
     Settings settings;
     std::optional<float> time_limit;
+    float vpl_bound = 0;  // 0: none
     uint32_t save_seconds = 60;   // between images that are written on the way; 0: none is
     bool resume = false, sums = true, quiet = false;
 };
@@ -65,6 +66,7 @@ std::shared_ptr<ReferenceOptions> add_options(CLI::App& command) {
     add_whole(command, "--bounces", s.bounces, 0, 64, "reflections of light before what the camera sees, diffuse and glossy");
     add_choice(command, "--brdf", s.model, models(), "how surfaces reflect: as glTF's metallic-roughness materials say, or their diffuse part alone, metals\nblack");
     add_choice(command, "--pixel", s.pixel, pixels(), "where rays go through a pixel: its middle, as render's do, or anywhere in it");
+    add_number(command, "--vpl-bound", o.vpl_bound, 1e-30f, 1e30f, "bound of the geometry term between what is seen and what lights it, 1/m^2: the same error as render's --vpl-bound,\nto compare with; unless given, there is none");
     add_whole(command, "--spp", s.samples, 1, most_samples, "samples a pixel, with those that --resume finds");
     add_parsed(command, "--time-limit", "S", "", "seconds of sampling: it ends with the pass of one sample a pixel that goes beyond",
                [&o](const std::string& text) { o.time_limit = parse_number("--time-limit", text, 0, 1e9f); });
@@ -105,6 +107,7 @@ std::map<std::string, std::string> metadata(const ReferenceOptions& o, const Loa
     const Settings& s = o.settings;
     nlohmann::ordered_json settings = {{"technique", "reference"}, {"bounces", s.bounces}, {"seed", s.seed}, {"brdf", choice_name(models(), s.model)},
                                        {"pixel", choice_name(pixels(), s.pixel)}};
+    if (o.vpl_bound > 0) settings["vpl_bound"] = show_number(o.vpl_bound);
     add_scene_settings(settings, o, loaded, seconds);
     std::map<std::string, std::string> metadata = {{"scene", loaded.scene.name},
                                                    {"camera", loaded.camera_name()},
@@ -130,6 +133,7 @@ void render_reference(const ReferenceOptions& o) {
 
     progress.show("building", 0);
     Settings settings = o.settings;
+    if (o.vpl_bound > 0) settings.bound = o.vpl_bound;
     if (o.time_limit) settings.time_limit = double(*o.time_limit);
     const auto write = [&] {
         Image image = film.image(o.sums);

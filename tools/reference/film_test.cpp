@@ -63,10 +63,11 @@ TEST(ReferenceFilm, other_settings_are_refused) {
               "'a.exr' has seed 1, and 2 is asked for; give the settings that it was made with, or leave --resume out");
     EXPECT_TRUE(contains(input_error([&] { resumed(image, Film(8, 8), {{"bounces", "2"}}); }), "bounces none, and 2"));
     EXPECT_TRUE(contains(input_error([&] { resumed(image, Film(8, 9), {{"seed", "1"}}); }), "8x8, and 8x9"));
+    EXPECT_TRUE(contains(input_error([&] { resumed(image, Film(8, 8), {}); }), "seed 1, and none"));
     tools::Image without = film_of(kit.scene, small(1)).image(false);
     EXPECT_TRUE(contains(input_error([&] { resumed(without, Film(8, 8), {}); }), "keeps no sums"));
     image.metadata["samples"] = "3x";
-    EXPECT_TRUE(contains(input_error([&] { resumed(image, Film(8, 8), {}); }), "how many samples"));
+    EXPECT_TRUE(contains(input_error([&] { resumed(image, Film(8, 8), {{"seed", "1"}}); }), "how many samples"));
 }
 
 TEST(ReferenceFilm, a_scene_is_known_by_what_is_seen) {

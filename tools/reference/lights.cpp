@@ -137,7 +137,8 @@ std::optional<Emitted> Emitters::sample(const vec3& position, float choice, cons
     e.direction = way / distance;
     e.radiance = surfaces_.emission(t, u, v) * surfaces_.opacity(t, u, v);
     e.density = per_area_[i] * squared * distance / cosine;
-    e.way = way + Surfaces::error_of(p, normal) * normal;
+    e.facing = cosine / (squared * distance);
+    e.way = way + Surfaces::error_of(p) * normal;
     return e;
 }
 

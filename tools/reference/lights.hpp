@@ -49,6 +49,7 @@ struct Emitted {
     vec3 direction;       // unit
     vec3 radiance;
     float density;        // 1/sr, as seen from the point
+    float facing;         // its cosine over the squared distance, 1/m^2
 };
 
 // Triangles that emit, chosen by area times mean radiance.

@@ -21,18 +21,19 @@ struct Radiance {
 
 class Paths {
 public:
-    // `lights`: the scene's, where they stand at the moment; `bounces`: reflections before that to the camera.
-    Paths(const scenes::Scene& scene, std::span<const scenes::Light> lights, const scenes::Triangles& triangles, uint32_t bounces, Model model);
+    // `lights`: the scene's, where they stand at the moment; `bounces`: reflections before that to the camera; `bound`: see Settings.
+    Paths(const scenes::Scene& scene, std::span<const scenes::Light> lights, const scenes::Triangles& triangles, uint32_t bounces, Model model, float bound);
 
     Radiance along(const vec3& origin, const vec3& direction, Sampler& sampler) const;
 
 private:
     vec3 punctual(const Surface& s, const Brdf& brdf, Sampler& sampler) const;
-    vec3 emitters(const Surface& s, const Brdf& brdf, Sampler& sampler) const;
+    vec3 emitters(const Surface& s, const Brdf& brdf, float bound, Sampler& sampler) const;
     vec3 surroundings(const Surface& s, const Brdf& brdf, Sampler& sampler) const;
 
     const uint32_t bounces_;
     const Model model_;
+    const float bound_;
     const vec3 background_;
     const Surfaces surfaces_;
     const Tracer tracer_;

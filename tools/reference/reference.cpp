@@ -11,7 +11,7 @@ namespace myriad::reference {
 
 Reference::Reference(const scenes::Scene& scene, std::span<const scenes::Light> lights, const scenes::Triangles& triangles, const scenes::Camera& camera,
                      const Settings& settings)
-    : settings_(settings), paths_(scene, lights, triangles, settings.bounces, settings.model), eye_(camera.to_world[3]) {
+    : settings_(settings), paths_(scene, lights, triangles, settings.bounces, settings.model, settings.bound), eye_(camera.to_world[3]) {
     assert(triangles.placements.empty());
     const double tangent = std::tan(0.5 * double(camera.yfov));
     const auto axis = [&](int i) { return glm::normalize(glm::dvec3(camera.to_world[i])); };  // a scaled node scales no camera

@@ -23,6 +23,8 @@ struct Settings {
     uint32_t seed = 1;
     Model model = Model::gltf;
     Pixel pixel = Pixel::centre;
+    // Of the geometry term between what is seen and what lights it, 1/m^2: for comparisons with images of VPLs, which are bounded by their --vpl-bound.
+    float bound = std::numeric_limits<float>::infinity();
     uint32_t samples = 64;        // a pixel, in all
     double time_limit = std::numeric_limits<double>::infinity();  // seconds: no pass of one sample a pixel begins after that
     uint32_t threads = 0;         // 0: as many as there are; the image is the same

@@ -62,6 +62,8 @@ Film resumed(const tools::Image& image, const Film& film, const std::map<std::st
         if (key != "git_revision") refuse(key, there, value);
         tools::say("warning", "'" + image.origin + "' was begun by revision " + there + "; where " + value + " samples differently, its pixels are a mixture.");
     }
+    for (const auto& [key, value] : image.metadata)
+        if (key != "samples" && !about.contains(key)) refuse(key, value, "none");
     return Film(image);
 }
 

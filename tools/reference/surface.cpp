@@ -63,12 +63,10 @@ std::array<vec3, 3> Surfaces::corners(uint32_t triangle) const {
 
 // What is rounded are the corners less the ray's origin, and their products: with a dozen operations, each by half an ulp of 2^-24, of at most
 // the corners' distance from one another or from the world's origin (a bound in the manner of Pharr, Jakob and Humphreys, 2016, section 3.9).
-float Surfaces::error_of(const std::array<vec3, 3>& p, const vec3& n) {
-    const vec3 most = glm::max(glm::max(glm::abs(p[0]), glm::abs(p[1])), glm::abs(p[2]));
-    const vec3 a = glm::abs(p[1] - p[0]), b = glm::abs(p[2] - p[0]), extent = glm::max(a, b);
-    const float longest = std::max({extent.x, extent.y, extent.z});
+float Surfaces::error_of(const std::array<vec3, 3>& p) {
+    const vec3 most = glm::max(glm::max(glm::abs(p[0]), glm::abs(p[1])), glm::abs(p[2])), extent = glm::max(glm::abs(p[1] - p[0]), glm::abs(p[2] - p[0]));
     constexpr float gamma = 16 * 0x1p-24f;
-    return gamma * (glm::dot(glm::abs(n), most) + std::max({most.x, most.y, most.z}) * 0.25f + longest);
+    return gamma * (std::max({most.x, most.y, most.z}) + std::max({extent.x, extent.y, extent.z}));
 }
 
 vec2 Surfaces::coordinates(uint32_t triangle, uint32_t set, float u, float v) const {
@@ -147,7 +145,6 @@ Surface Surfaces::at(uint32_t triangle, float u, float v, const vec3& d) const {
     s.triangle = triangle;
     s.position = blend(p[0], p[1], p[2], u, v);
     s.geometric = unit_or(glm::cross(unit_or(p[1] - p[0], vec3(0)), unit_or(p[2] - p[0], vec3(0))), vec3(0, 1, 0));
-    s.error = error_of(p, s.geometric);
     const auto& n = triangles_.normals;
     s.shading = unit_or(blend(n[t.x], n[t.y], n[t.z], u, v), s.geometric);
     const float winding = glm::dot(s.shading, s.geometric) < 0 ? -1.0f : 1.0f;  // decides the side, not the vertices' normals
@@ -166,6 +163,8 @@ Surface Surfaces::at(uint32_t triangle, float u, float v, const vec3& d) const {
         if (!behind || m.double_sided) s.emission = emission(triangle, u, v);
     }
     if (behind) s.geometric = -s.geometric, s.shading = -s.shading;
+    // Back along the ray, too: where two surfaces meet, the one that was hit may lie behind the other by rounding.
+    s.origin = s.position + error_of(p) * (s.geometric - d);
     // A normal that leans away from the eye is brought to the edge of what it sees.
     if (const float away = glm::dot(s.shading, d); away > 0) s.shading = unit_or(s.shading - away * d, s.geometric);
     return s;

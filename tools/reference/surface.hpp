@@ -20,14 +20,11 @@ struct Surface {
     vec3 position{0};
     vec3 geometric{0};      // unit normals, on the side that the ray came from
     vec3 shading{0};
-    float error = 0;        // metres along the normal that `position`, and where rays meet the triangle, may be off
+    vec3 origin{0};         // where rays leave from: on that side, surely beyond the triangle's plane, and seen from where the ray came from
     vec3 base{0};           // base colour
     float metallic = 0, roughness = 1;
     vec3 emission{0};       // radiance towards where the ray came from; of unlit ones too, which only the camera sees
     bool unlit = false;
-
-    // Where a ray in direction `d` leaves from: surely beyond the triangle's plane, on that side.
-    vec3 origin(const vec3& d) const { return position + (glm::dot(d, geometric) < 0 ? -error : error) * geometric; }
 };
 
 // Of all triangles in the world's space.
@@ -52,8 +49,8 @@ public:
     std::array<vec3, 3> corners(uint32_t triangle) const;
     uint32_t count() const { return uint32_t(triangles_.triangles.size()); }
     uint32_t material_of(uint32_t triangle) const { return triangles_.triangles[triangle].w; }
-    // How far a ray's meeting with a triangle of these corners may be off along the normal n, metres.
-    static float error_of(const std::array<vec3, 3>& corners, const vec3& n);
+    // How far a ray's meeting with a triangle of these corners may be off, metres.
+    static float error_of(const std::array<vec3, 3>& corners);
 
 private:
     vec2 coordinates(uint32_t triangle, uint32_t set, float u, float v) const;
