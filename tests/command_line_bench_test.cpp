@@ -142,6 +142,21 @@ TEST_F(command_line, bench_coverage) {
     for (const char* technique : {"manylods", "megaviews"}) EXPECT_LT(bias[technique + std::string(" full")], bias[technique + std::string(" exact")]);
 }
 
+TEST_F(command_line, bench_bias) {
+    succeed({"bench", "bias", "--scene", "builtin:cornell", "--views", "32", "--parameters", "vpl-bound", "--reference-seconds", "0.1", "--json", folder / "rows.json", "--images",
+             folder / ""});
+    std::map<double, double> light;
+    for (const auto& row : rows_of(folder / "rows.json")) {
+        EXPECT_EQ(row["bench"], "bias");
+        light[row["settings"]["value"]] = row["error"]["light"];
+    }
+    EXPECT_EQ(light.size(), 6u);
+    double last = -1;
+    for (const auto& [bound, more] : light) EXPECT_GE(more, std::exchange(last, more)) << bound << ": a lower bound loses more";
+    EXPECT_LT(light.begin()->second, -0.1);
+    EXPECT_TRUE(contains(bytes_of(folder / "bias-vpl-bound.svg"), "light lost"));
+}
+
 // Which candidates are within the budget depends on the machine.
 TEST_F(command_line, bench_error) {
     refuse(2, {"bench", "gather", "--report", "r.html"}, "--report is an option of bench error");

@@ -49,6 +49,8 @@ const std::vector<Bench>& benches() {
          {"--arity", "--map-sizes", "--levels", "--images"}, 16, 2.0f},
         {"coverage", "what nodes smaller than a texel cover: their middles, whole texels, or a share by dice; how much light each way of drawing loses", bench_coverage,
          {"--arity", "--levels", "--images"}, 16},
+        {"bias", "what each approximation costs in error, all else exact: the VPLs' bound, maps' resolution and level of detail, receiver bias, few VPLs a pixel", bench_bias,
+         {"--parameters", "--references", "--reference-seconds", "--images", "--arity", "--bounces"}, {}, 2.0f},
         {"error", "seconds a frame against the error of the image, of every technique at its best, beside a path tracer", bench_error,
          {"--scenes", "--techniques", "--budgets", "--references", "--reference-seconds", "--report", "--size", "--csv", "--bounces", "--arity"}},
         {"gather", "what pixels gather of many VPLs: all, subsets, some that are not culled, and what a light tree picks, with their errors", bench_gather,
@@ -123,7 +125,7 @@ void add_bench(CLI::App& app) {
     bench->add_option("--samples", o.log2_samples, "log2 of the number of surface samples (20)")->check(CLI::Range(0u, 26u));
     bench->add_option("--arity", o.arity, "children of a node of the tree: 2, 4 or 8 (8)")->check(CLI::IsMember({2u, 4u, 8u}));
     bench->add_option("--map-size", o.map_size, "texels a side of a half map (32; coverage, megaviews-views and -resolution: 16)")->check(CLI::Range(2u, 1024u));
-    bench->add_option("--epsilon", o.epsilon, "criterion, texels (1; megaviews-views and -resolution: 2)")->check(CLI::Range(0.01f, 1000.0f));
+    bench->add_option("--epsilon", o.epsilon, "criterion, texels (1; bias, megaviews-views and -resolution: 2)")->check(CLI::Range(0.01f, 1000.0f));
     bench->add_option("--repeat", o.repeats, "measured runs of each row, after a warm-up (5)")->check(CLI::Range(1u, 1000u));
     bench->add_option("--memory-limit", arguments->memory_mib, "MiB of device memory (all)")->check(CLI::Range(1u, 1u << 24));
     bench->add_option("--seed", o.seed, "seed (1)");
@@ -134,12 +136,15 @@ void add_bench(CLI::App& app) {
     bench->add_option("--techniques", o.techniques, "error: those that are tried beside the path tracer, separated by commas: manylods, megaviews, rays, ism, brute (all)")
         ->delimiter(',')
         ->check(CLI::IsMember({"manylods", "megaviews", "rays", "ism", "brute"}));
+    bench->add_option("--parameters", o.parameters, "bias: which are looked at, separated by commas: map-size, epsilon, bias, gather, vpl-bound (all)")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"map-size", "epsilon", "bias", "gather", "vpl-bound"}));
     bench->add_option("--budgets", o.budgets, "error: seconds a frame, separated by commas (0.5,1,2,5,10)")->delimiter(',')->check(CLI::Range(0.01, 1e4));
-    bench->add_option("--references", o.references, "error: a folder where path-traced references are kept between runs");
-    bench->add_option("--reference-seconds", o.reference_seconds, "error: that a path-traced reference takes (120)")->check(CLI::Range(0.1, 1e6));
+    bench->add_option("--references", o.references, "bias, error: a folder where path-traced references are kept between runs");
+    bench->add_option("--reference-seconds", o.reference_seconds, "bias, error: that a path-traced reference takes (120)")->check(CLI::Range(0.1, 1e6));
     bench->add_option("--report", o.report, "error: write an HTML file with plots, tables and pictures");
     add_parsed(*bench, "--size", "WxH", "640x360", "error: pixels", [&o](const std::string& text) { std::tie(o.width, o.height) = parse_size("--size", text); });
-    bench->add_option("--bounces", o.bounces, "error, gather: reflections of light before what is seen (1)")->check(CLI::Range(0u, 64u));
+    bench->add_option("--bounces", o.bounces, "bias, error, gather: reflections of light before what is seen (1)")->check(CLI::Range(0u, 64u));
     bench->add_option("--picks", o.picks, "gather: VPLs that a pixel gathers, separated by commas (4,16,64,256,1024)")->delimiter(',')->check(CLI::Range(1u, 4096u));
     bench->add_option("--depth", o.depth, "octree: levels below the root (10)")->check(CLI::Range(0u, 21u));
     bench->add_option("--csv", o.csv, "manylods-fig8: write a line for each frame; megaviews-views: for each row");
@@ -150,7 +155,7 @@ void add_bench(CLI::App& app) {
     bench->add_option("--plot", o.plot, "manylods-fig8: draw the cuts' times over the frames, as SVG; megaviews-views: the maps' over views");
     bench->add_option("--map-sizes", o.map_sizes, "megaviews-resolution: texels a side, separated by commas (16,32,64,128,256)")->delimiter(',')->check(CLI::Range(2u, 1024u));
     bench->add_option("--levels", o.levels, "of the scene's octree. megaviews-resolution: separated by commas (8,9,10,11); octree: such trees alone; coverage, megaviews-views: one, of what MegaViews draws in place of samples")->delimiter(',')->check(CLI::Range(1u, 12u));
-    bench->add_option("--images", o.images, "coverage, manylods-ism, megaviews-resolution: a folder for the images that are compared, as EXR and PNG");
+    bench->add_option("--images", o.images, "coverage, manylods-ism, megaviews-resolution: a folder for the images that are compared, as EXR and PNG; bias: for plots");
     bench->add_option("--device", arguments->device, "part of a device's name, or its index");
     bench->callback([arguments, bench] { run(*arguments, *bench); });
 }

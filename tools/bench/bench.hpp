@@ -59,6 +59,7 @@ struct BenchOptions {
     uint32_t measured = 65536;      // views: beyond that what draws each view for itself is extrapolated
     std::vector<std::string> scenes;         // empty: `scene`
     std::vector<std::string> techniques;     // empty: all
+    std::vector<std::string> parameters;     // empty: all
     std::vector<double> budgets = {0.5, 1, 2, 5, 10};  // seconds a frame
     std::string references;         // a folder; empty: they are not kept
     double reference_seconds = 120;
@@ -97,6 +98,8 @@ void bench_megaviews(engine::Device& device, const BenchOptions& options, const 
 // bench/maps_error.cpp
 void bench_resolution(engine::Device& device, const BenchOptions& options, const RowSink& sink);
 void bench_coverage(engine::Device& device, const BenchOptions& options, const RowSink& sink);
+// bench/bias.cpp
+void bench_bias(engine::Device& device, const BenchOptions& options, const RowSink& sink);
 // bench/error.cpp
 void bench_error(engine::Device& device, const BenchOptions& options, const RowSink& sink);
 // bench/gather.cpp

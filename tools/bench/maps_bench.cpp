@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <numeric>
 
 #include "scenes/sky.hpp"
 #include "tools/metrics.hpp"
@@ -91,6 +92,13 @@ double white_error(const std::vector<vec4>& reference, const std::vector<vec4>& 
         return image;
     };
     return measure(image(reference), image(test), 0.01).rel_mse;
+}
+
+double indirect_light(const Image& image) {
+    const Image::Rgb light = *image.rgb("indirect");
+    double sum = 0;
+    for (const std::span<const float> plane : {light.r, light.g, light.b}) sum = std::accumulate(plane.begin(), plane.end(), sum);
+    return sum;
 }
 
 void require_folder(const std::string& images) {

@@ -4,6 +4,7 @@
 #include "passes/frame.hpp"
 #include "scenes/moment.hpp"
 #include "tools/bench/bench.hpp"
+#include "tools/image.hpp"
 
 namespace myriad::tools {
 
@@ -31,6 +32,9 @@ void add_maps_times(BenchRow& row, const passes::Frame& frame);
 
 // relMSE of what white diffuse surfaces reflect, of irradiance a pixel each.
 double white_error(const std::vector<vec4>& reference, const std::vector<vec4>& test, uint32_t width, uint32_t height);
+
+// The indirect light of all pixels and channels of an image with that layer.
+double indirect_light(const Image& image);
 
 // For --images. Throws InputError where a folder is named that does not exist.
 void require_folder(const std::string& images);

@@ -5,7 +5,6 @@
 //   `myriad bench coverage`: what nodes smaller than a texel cover, and how much light that loses or lets through.
 #include <cstdio>
 #include <filesystem>
-#include <numeric>
 
 #include "scenes/sky.hpp"
 #include "tools/bench/maps_bench.hpp"
@@ -92,7 +91,7 @@ private:
         }
         if (!reference) return image;
         const Metrics metrics = measure(*reference, image, 0.01);
-        row.error = {{"relMSE", metrics.rel_mse}, {"SSIM", metrics.ssim}, {"PSNR", metrics.psnr}, {"bias", indirect(image) / indirect(*reference) - 1}};
+        row.error = {{"relMSE", metrics.rel_mse}, {"SSIM", metrics.ssim}, {"PSNR", metrics.psnr}, {"bias", indirect_light(image) / indirect_light(*reference) - 1}};
         const passes::MapCounters& maps = *frame.counters().maps;
         row.counters = {{"batches", double(maps.batches)}, {"groups", double(maps.groups)}};
         if (settings.visibility == Visibility::manylods) row.counters["cut"] = double(maps.cut);
@@ -102,14 +101,6 @@ private:
         set_bytes(row, device_);
         sink_(row);
         return image;
-    }
-
-    // Indirect light of all pixels.
-    static double indirect(const Image& image) {
-        const Image::Rgb light = *image.rgb("indirect");
-        double sum = 0;
-        for (const std::span<const float> plane : {light.r, light.g, light.b}) sum = std::accumulate(plane.begin(), plane.end(), sum);
-        return sum;
     }
 
     const char* bench_;
