@@ -94,6 +94,29 @@ TEST_F(command_line, bad_scenes_and_cameras) {
     refuse(2, tiny + Arguments{"-o", exr, "--camera", "99"}, "99");
 }
 
+TEST_F(command_line, a_reference_that_is_interrupted) {
+    const Arguments base = {"reference", "builtin:cornell?light=point", "--size", "16x12", "-q"};
+    refuse(2, base, "--output is required");
+    refuse(2, base + Arguments{"-o", png}, "name an .exr file");
+    refuse(2, base + Arguments{"-o", exr, "--spp", "0"}, "--spp '0'");
+    refuse(2, base + Arguments{"-o", exr, "--time", "1"}, "no animation");
+    const TempFolder other;
+    const std::string parts = other / "parts.exr", whole = other / "whole.exr";
+    succeed(base + Arguments{"-o", parts, "--spp", "3", "--resume"});  // there is nothing yet to go on from
+    const std::string before = bytes_of(parts);
+    refuse(2, base + Arguments{"-o", parts, "--spp", "5", "--resume", "--seed", "2"}, "has seed 1, and 2 is asked for");
+    refuse(2, base + Arguments{"-o", parts, "--spp", "5", "--resume", "--brdf", "diffuse"}, "has brdf gltf, and diffuse");
+    EXPECT_EQ(bytes_of(parts), before);
+    succeed(base + Arguments{"-o", parts, "--spp", "5", "--resume"}, {{"MYRIAD_THREADS", "1"}});
+    succeed(base + Arguments{"-o", whole, "--spp", "5"});
+    EXPECT_EQ(bytes_of(parts), bytes_of(whole));
+    const Image image = read_exr(whole);
+    EXPECT_EQ(image.metadata.at("samples"), "5");
+    EXPECT_EQ(image.metadata.at("technique"), "reference");
+    EXPECT_GT(mean(whole), 0.01);
+    EXPECT_TRUE(image.rgb("direct") && image.rgb("indirect") && image.rgb("variance"));
+}
+
 TEST_F(command_line, points_in_place_of_rays) {
     refuse(2, tiny + Arguments{"-o", exr, "--primary", "triangles"}, "rays, points");
     refuse(2, tiny + Arguments{"-o", exr, "--primary-pixels", "2"}, "--primary-pixels is about points");
