@@ -6,7 +6,6 @@
 
 #include "compute/kernels.hpp"
 #include "compute/manylods/cut_io.h"
-#include "compute/svo/svo_build.h"
 #include "engine/error.hpp"
 #include "engine/transfer.hpp"
 
@@ -19,14 +18,19 @@ struct Svo::Builder {
     Voxels voxels;
     Octree octree;
     engine::Array<vec4> merged;
-    engine::Array<SvoTriangle> triangles;
 
-    Builder(engine::Device& device, const SvoRoom& room, uint32_t depth, uint count, const engine::Constants& constants)
+    Builder(engine::Device& device, const SvoRoom& room, uint32_t depth, const engine::Constants& constants)
         : voxels(device, AppendMode::scan, depth, room.next, room.pairs, constants), octree(device, room.pairs, room.nodes, depth),
-          merged(device, "svo build", "merged nodes", 3 * room.inner), triangles(device, "svo build", "triangles", count) {}
+          merged(device, "svo build", "merged nodes", 3 * room.inner) {}
 };
 
 namespace {
+
+engine::Constants leaf_constants(const WorldTriangles& world) {
+    engine::Constants constants = world.constants();
+    constants[2] = !world.opacity.everywhere();
+    return constants;
+}
 
 // How many cells triangles meet, about: as many as their area, edges and corners do on average over all places they may be at.
 double pairs_guess(const WorldTriangles& world, const OctreeCube& cube) {
@@ -46,16 +50,11 @@ uint64_t more(T needed) { return uint64_t(needed) + uint64_t(needed) / 8 + 64; }
 
 }  // namespace
 
-// On a CPU a workgroup is what runs in step, so that its leaves are many for each lane.
-engine::Constants Svo::leaf_constants() const {
-    return {{0, device_.info().type == "cpu" ? std::max(8u, device_.group_size()) : svo_parents}, {2, asks_}};
-}
 engine::Constants Svo::constants() { return {{bsh_arity_constant, 3}, {svo_constant, 1}}; }
 
 Svo::Svo(engine::Device& device, const WorldTriangles& world, uint32_t depth, const vec3& low, const vec3& high, SvoRoom room)
     : device_(device), depth_(depth), cube_(octree_cube(low, high, depth)), triangle_count_(world.count()), shared_(world.shared()),
-      asks_(!world.opacity.everywhere()), gather_(device, compute_kernels, "svo/triangles", world.constants()),
-      leaves_(device, compute_kernels, "svo/leaves", leaf_constants()), inner_(device, compute_kernels, "svo/inner"),
+      asks_(!world.opacity.everywhere()), leaves_(device, compute_kernels, "svo/leaves", leaf_constants(world)), inner_(device, compute_kernels, "svo/inner"),
       world_constants_(world.constants()), room_(room), grid_(device), count_(engine::upload(device, "svo", "number of triangles", std::vector<uint>{world.count()})) {
     assert(depth >= 1 && depth <= most_levels);
     if (triangle_count_ > Voxels::max_triangles) throw InputError("an octree takes up to " + std::to_string(Voxels::max_triangles) + " triangles; give --tree bsh");
@@ -83,7 +82,7 @@ void Svo::make_room() {
             boxes_ = {device_, "svo", "boxes of the octree", room_.nodes};
             cones_ = {device_, "svo", "cones of the octree", room_.nodes + bsh_most};
         }
-        if (!builder_) builder_ = std::make_unique<Builder>(device_, room_, depth_, triangle_count_, world_constants_);
+        if (!builder_) builder_ = std::make_unique<Builder>(device_, room_, depth_, world_constants_);
     } catch (const OutOfMemory& e) {
         builder_.reset();
         throw OutOfMemory("an octree of " + std::to_string(depth_) + " levels, of " + std::to_string(room_.pairs) + " cells that triangles meet, does not fit (" + e.what() +
@@ -122,14 +121,12 @@ void Svo::build(engine::Recorder& recorder, const engine::Array<vec3>& positions
         octree.end(recorder);
         {
             auto scope = recorder.scope("octree leaves");
-            recorder.dispatch(gather_, SvoTrianglesPush{.found = {recorder.write(builder_->triangles).address}, .triangles = recorder.read(triangles),
-                                                        .positions = recorder.read(positions), .instances = shared_ ? recorder.read(*instances) : Instances{},
-                                                        .instance_count = instance_count, .count = triangle_count_}, triangle_count_);
             grid_.dispatch(recorder, leaves_, octree.state(), Octree::count_word + depth_ - 1, room_.inner, 1, [&] {
                 return SvoLeavesPush{.blocks = {recorder.write(blocks_).address}, .spheres = recorder.write(spheres_), .cones = recorder.write(cones_),
                                      .boxes = recorder.write(boxes_), .merged = recorder.write(builder_->merged), .octree = octree.read(recorder),
-                                     .triangles = {recorder.read(builder_->triangles).address}, .opacity = asks_ ? opacity(recorder) : OpacityRef{}, .cube = cube_,
-                                     .shape = shape};
+                                     .triangles = recorder.read(triangles), .positions = recorder.read(positions),
+                                     .instances = shared_ ? recorder.read(*instances) : Instances{}, .opacity = asks_ ? opacity(recorder) : OpacityRef{},
+                                     .cube = cube_, .instance_count = instance_count, .shape = shape};
             });
         }
         {

@@ -6,7 +6,7 @@
 
 #include "compute/bsh/scene_tree.hpp"
 #include "compute/instances/world.hpp"
-#include "compute/svo/svo_io.h"
+#include "compute/svo/svo_build.h"
 #include "compute/voxels/voxels.hpp"
 
 namespace myriad::compute {
@@ -64,7 +64,6 @@ public:
 private:
     struct Builder;
 
-    engine::Constants leaf_constants() const;
     void make_room();
     bool grow(const AppendReport& lists, const OctreeState& octree);
 
@@ -73,7 +72,7 @@ private:
     OctreeCube cube_;
     uint triangle_count_;
     bool shared_, asks_;
-    engine::Program gather_, leaves_, inner_;
+    engine::Program leaves_, inner_;
     engine::Constants world_constants_;
     SvoRoom room_;
     SvoSize size_;

@@ -11,22 +11,7 @@
 #include "compute/svo/svo_io.h"
 
 MYRIAD_BEGIN
-// "svo/triangles": of each triangle of the world, what leaves ask of it, gathered once: a leaf's triangles are anywhere.
-struct SvoTriangle {
-    Corners corners;
-    uint cone;               // of its normal
-};
-MYRIAD_ARRAY(SvoTriangles, SvoTriangle, 4)
-struct SvoTrianglesPush {
-    SvoTriangles found;      // by triangle of the world
-    Uint4s triangles;
-    Positions positions;
-    Instances instances;
-    uint instance_count, count;
-};
-
-// "svo/leaves": one workgroup svo_parents consecutive parents of leaves: the leaves, their blocks, and what the parents bound.
-const uint svo_parents = 64u;
+// "svo/leaves": one invocation a parent of leaves: the leaves, their block, and what the parent bounds.
 struct SvoLeavesPush {
     SvoBlocks blocks;
     Uint2s spheres;          // by node
@@ -34,9 +19,12 @@ struct SvoLeavesPush {
     Uint2s boxes;            // by node
     Float4s merged;          // by inner node, three each: sphere; low corner and weight; high corner and what is missing
     OctreeRef octree;        // its items are triangles
-    SvoTriangles triangles;
+    Uint4s triangles;
+    Positions positions;
+    Instances instances;
     OpacityRef opacity;
     OctreeCube cube;
+    uint instance_count;
     uint shape;              // depth << 28 | room for inner nodes: where there is too little nothing is written
 };
 // "svo/inner": one invocation a node of a level above, from the lowest up.
@@ -248,67 +236,6 @@ MYRIAD_FN void svo_add(MYRIAD_INOUT(SvoOwner) owner, vec3 origin, Sphere s, BshB
 }
 MYRIAD_FN vec3 svo_middle(SvoOwner owner, vec3 origin) {
     return owner.weight > 0.0f ? origin + owner.sum / owner.weight : 0.5f * owner.low + 0.5f * owner.high;
-}
-
-// A block's frame and its owner's cone, child by child: as bsh_frame and bsh_cone_merge, which the twin calls, have them of arrays. (Arrays that an index goes through
-// cost lanes of a CPU a load or a store each.)
-struct SvoExtent {
-    vec3 low, high;            // of children's middles
-    vec3 axis, least, most;    // the first child's; and of all, turned to its side
-};
-MYRIAD_FN SvoExtent svo_extent(vec3 middle, vec3 axis) {
-    SvoExtent e;
-    e.low = middle;
-    e.high = middle;
-    e.axis = axis;
-    e.least = axis;
-    e.most = axis;
-    return e;
-}
-MYRIAD_FN void svo_add(MYRIAD_INOUT(SvoExtent) e, vec3 middle, vec3 axis) {
-    e.low = min(e.low, middle);
-    e.high = max(e.high, middle);
-    const vec3 a = axis.x * e.axis.x + axis.y * e.axis.y + axis.z * e.axis.z < 0.0f ? -axis : axis;
-    e.least = min(e.least, a);
-    e.most = max(e.most, a);
-}
-MYRIAD_FN vec4 svo_frame_of(SvoExtent e) {
-    const float extent = max(max(e.high.x - e.low.x, e.high.y - e.low.y), e.high.z - e.low.z) / 65535.0f;
-    return vec4(e.low, uintBitsToFloat((floatBitsToUint(extent) + 0x7fffffu) & 0x7f800000u));
-}
-struct SvoCone {
-    uint axis;
-    vec3 to;
-    bool all;
-    float least_cos;
-    uint least_code;
-};
-MYRIAD_FN SvoCone svo_cone(SvoExtent e) {
-    const vec3 between = e.least + e.most;
-    SvoCone cone;
-    cone.all = !(abs(between.x) + abs(between.y) + abs(between.z) > 0.0f);
-    cone.axis = bsh_cone_pack_axis(cone.all ? e.axis : between);
-    cone.to = bsh_cone_axis(cone.axis);
-    cone.least_cos = 1.0f;
-    cone.least_code = 0u;
-    return cone;
-}
-MYRIAD_FN void svo_add(MYRIAD_INOUT(SvoCone) cone, uint child) {
-    if ((child & 0xffffffu) == cone.axis) {
-        cone.least_code = max(cone.least_code, child >> 24);
-        return;
-    }
-    const vec3 a = bsh_cone_axis(child);
-    const vec3 s = cross(a, cone.to);
-    const float ca = abs(a.x * cone.to.x + a.y * cone.to.y + a.z * cone.to.z);
-    const float sa = sqrt(s.x * s.x + s.y * s.y + s.z * s.z);
-    const vec2 cs = bsh_cone_cos_sin(child);
-    cone.least_cos = min(cone.least_cos, ca * cs.x - sa * cs.y);
-}
-MYRIAD_FN uint svo_code(SvoCone cone) {
-    if (cone.all) return bsh_cone_all;
-    const uint code = cone.least_cos < 1.0f ? bsh_cone_code(cone.axis, cone.least_cos) >> 24 : 0u;
-    return cone.axis | (max(code, cone.least_code) << 24);
 }
 MYRIAD_END
 

@@ -8,7 +8,6 @@
 #include "compute/manylods/manylods_ref.hpp"
 #include "compute/octree/octree_ref.hpp"
 #include "compute/svo/svo.hpp"
-#include "compute/svo/svo_build.h"
 
 namespace myriad::compute {
 
