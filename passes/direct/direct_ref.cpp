@@ -10,7 +10,7 @@ using glm::dvec3;
 IncidentRef incident_ref(const scenes::Light& light, const dvec3& p) {
     if (light.type == scenes::Light::Type::directional) return {-dvec3(light.direction), dvec3(light.intensity), 1e30};
     const dvec3 d = dvec3(light.position) - p;
-    IncidentRef incident{glm::normalize(d), dvec3(light.intensity) / glm::dot(d, d), glm::length(d)};
+    IncidentRef incident{glm::normalize(d), dvec3(light.intensity) / std::max(glm::dot(d, d), double(light.radius) * double(light.radius)), glm::length(d)};
     if (light.type == scenes::Light::Type::spot) {
         // KHR_lights_punctual, in the words of its sample code.
         const double scale = 1 / std::max(0.001, std::cos(double(light.inner_cone)) - std::cos(double(light.outer_cone)));

@@ -59,6 +59,24 @@ TEST_F(DirectTest, point_light_over_a_plane) {
     }
 }
 
+// Within its radius a light grows no more.
+TEST_F(DirectTest, a_light_with_a_radius_over_a_plane) {
+    TestScene test = floor(vec3(1));
+    test.light(Type::point, {1, 2, -1}, {0, 0, -1}, vec3(10));
+    test.scene.lights[0].radius = 3;
+    const auto got = run(test, 31, 17);
+    size_t inside = 0;
+    for (size_t i = 0; i < got.radiance.size(); ++i) {
+        const dvec3 d = dvec3(1, 2, -1) - dvec3(got.positions[i]);
+        inside += glm::length(d) < 3;
+        const double expected = 10 / std::numbers::pi * (d.y / glm::length(d)) / std::max(glm::dot(d, d), 9.0);
+        ASSERT_NEAR(got.radiance[i].x, expected, 1e-5 * expected + 1e-9) << i;
+    }
+    EXPECT_GT(inside, 10u);
+    EXPECT_LT(inside, got.radiance.size());
+    EXPECT_EQ(differing(test, got, 31, 17), 0u);
+}
+
 TEST_F(DirectTest, directional_light_is_irradiance_across_its_way) {
     TestScene test = floor(vec3(0.5f));
     test.light(Type::directional, vec3(0), {1, -2, 0.5f}, vec3(3, 2, 1));

@@ -84,7 +84,8 @@ MYRIAD_FN Incident incident_from(Light light, vec3 p) {
     }
     incident.distance = sqrt(squared);
     incident.to_light = d / incident.distance;
-    incident.irradiance = light.intensity / squared;
+    const float radius = light.type == light_point ? light.extent.x : 0.0f;  // within it, light grows no more
+    incident.irradiance = light.intensity / max(squared, radius * radius);
     if (light.type == light_spot) incident.irradiance *= spot_falloff(light, -dot(incident.to_light, light.direction));
     return incident;
 }
