@@ -148,8 +148,8 @@ std::string to_svg(const Plot& plot) {
         double legend = width - right;
         for (size_t l = end; l-- > first;) {
             const Plot::Line& line = plot.lines[l];
-            svg += text_at(legend, 22 + legend_line * double(i), "end", line.name);
-            legend -= name_width(line) - 28;
+            legend -= name_width(line) - 28;  // the name begins beside its swatch, however wide the letters are
+            svg += text_at(legend + 6, 22 + legend_line * double(i), "start", line.name);
             svg += stroke(legend - 16, 18 + legend_line * double(i), legend, 18 + legend_line * double(i), line.colour, 2);
             legend -= 28;
         }

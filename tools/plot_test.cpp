@@ -72,7 +72,8 @@ TEST(plot, many_names_take_lines_of_their_own) {
     for (const auto& text : document.child("svg").children("text"))
         if (std::string(text.text().get()) == "a rather long name") {
             ++names[text.attribute("y").as_double()];
-            EXPECT_GT(text.attribute("x").as_double(), 64 + 8 * 18) << svg;
+            EXPECT_GT(text.attribute("x").as_double(), 64 + 16) << svg;           // beside its swatch, right of the axis
+            EXPECT_LE(text.attribute("x").as_double() + 8 * 18, 720 - 16) << svg;  // letters are narrower
         }
     EXPECT_EQ(names, (std::map<double, int>{{40, 3}, {58, 3}}));
 }
