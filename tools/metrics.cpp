@@ -164,13 +164,23 @@ std::vector<float> flip_errors(Flip kind, const Image& reference, const Image& t
     return errors;
 }
 
+namespace {
+
+double mean_of(const std::vector<float>& errors) {
+    double sum = 0;
+    for (float error : errors) sum += error;
+    return sum / static_cast<double>(errors.size());
+}
+
+}  // namespace
+
+double mean_flip(const Image& reference, const Image& test) { return mean_of(flip_errors(Flip::ldr, reference, test)); }
+
 void measure_flip(Metrics& metrics, const Image& reference, const Image& test, double ppd, std::string_view layer) {
     if (!metrics.finite()) return;
     const auto put = [&](Flip kind, double& mean, double& p95) {
         std::vector<float> errors = flip_errors(kind, reference, test, ppd, layer);
-        mean = 0;
-        for (float error : errors) mean += error;
-        mean /= static_cast<double>(errors.size());
+        mean = mean_of(errors);
         p95 = percentile(std::move(errors), 0.95);
     };
     put(Flip::ldr, metrics.flip, metrics.p95_flip);

@@ -67,6 +67,9 @@ void measure_flip(Metrics& metrics, const Image& reference, const Image& test, d
 enum class Flip { ldr, hdr };
 std::vector<float> flip_errors(Flip kind, const Image& reference, const Image& test, double ppd = flip_ppd, std::string_view layer = "");
 
+// Their mean by FLIP, alone: HDR-FLIP looks at every exposure and takes several times as long.
+double mean_flip(const Image& reference, const Image& test);
+
 // |t - r| as an image with channels R, G, B; errors as for measure.
 Image absolute_difference(const Image& reference, const Image& test, std::string_view layer = "");
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "tools/xml.hpp"
+
 namespace myriad::tools {
 namespace {
 
@@ -24,7 +26,7 @@ std::string mark_number(double value, bool logarithmic) {
 }
 
 std::string text_at(double x, double y, const char* anchor, const std::string& text, const std::string& more = "") {
-    return "<text x=\"" + number(x) + "\" y=\"" + number(y) + "\" text-anchor=\"" + anchor + "\"" + more + ">" + html_escaped(text) + "</text>\n";
+    return "<text x=\"" + number(x) + "\" y=\"" + number(y) + "\" text-anchor=\"" + anchor + "\"" + more + ">" + xml_escaped(text) + "</text>\n";
 }
 
 std::string stroke(double x0, double y0, double x1, double y1, const std::string& colour, double weight) {
@@ -78,18 +80,6 @@ std::string path_of(const Plot::Line& line, size_t first, size_t end, const Axis
 }
 
 }  // namespace
-
-std::string html_escaped(const std::string& text) {
-    std::string out;
-    for (const char c : text) {
-        if (c == '&') out += "&amp;";
-        else if (c == '<') out += "&lt;";
-        else if (c == '>') out += "&gt;";
-        else if (c == '"') out += "&quot;";
-        else out += c;
-    }
-    return out;
-}
 
 std::vector<double> ticks(double low, double high, int count) {
     assert(low < high && count > 0);

@@ -25,9 +25,6 @@ struct Plot {
 // Same bytes for the same plot.
 std::string to_svg(const Plot& plot);
 
-// As text and in quoted attributes of HTML and XML.
-std::string html_escaped(const std::string& text);
-
 // About `count` round numbers that span [low, high], one step beyond at most; low < high.
 std::vector<double> ticks(double low, double high, int count);
 

@@ -52,7 +52,7 @@ const std::vector<Bench>& benches() {
         {"bias", "what each approximation costs in error, all else exact: the VPLs' bound, maps' resolution and level of detail, receiver bias, few VPLs a pixel", bench_bias,
          {"--parameters", "--references", "--reference-seconds", "--images", "--arity", "--bounces"}, {}, 2.0f},
         {"error", "seconds a frame against the error of the image, of every technique at its best, beside a path tracer", bench_error,
-         {"--scenes", "--techniques", "--budgets", "--references", "--reference-seconds", "--report", "--size", "--csv", "--bounces", "--arity"}},
+         {"--scenes", "--techniques", "--budgets", "--references", "--reference-seconds", "--report", "--size", "--csv", "--bounces", "--arity"}, {}, 2.0f},
         {"gather", "what pixels gather of many VPLs: all, subsets, some that are not culled, and what a light tree picks, with their errors", bench_gather,
          {"--arity", "--bounces", "--picks"}},
         {"sort", "radix sorts of keys with payload: the device's, in several shapes, against the host's", bench_sort, {"--items"}},
@@ -125,7 +125,7 @@ void add_bench(CLI::App& app) {
     bench->add_option("--samples", o.log2_samples, "log2 of the number of surface samples (20)")->check(CLI::Range(0u, 26u));
     bench->add_option("--arity", o.arity, "children of a node of the tree: 2, 4 or 8 (8)")->check(CLI::IsMember({2u, 4u, 8u}));
     bench->add_option("--map-size", o.map_size, "texels a side of a half map (32; coverage, megaviews-views and -resolution: 16)")->check(CLI::Range(2u, 1024u));
-    bench->add_option("--epsilon", o.epsilon, "criterion, texels (1; bias, megaviews-views and -resolution: 2)")->check(CLI::Range(0.01f, 1000.0f));
+    bench->add_option("--epsilon", o.epsilon, "criterion, texels (1; bias, error, megaviews-views and -resolution: 2)")->check(CLI::Range(0.01f, 1000.0f));
     bench->add_option("--repeat", o.repeats, "measured runs of each row, after a warm-up (5)")->check(CLI::Range(1u, 1000u));
     bench->add_option("--memory-limit", arguments->memory_mib, "MiB of device memory (all)")->check(CLI::Range(1u, 1u << 24));
     bench->add_option("--seed", o.seed, "seed (1)");

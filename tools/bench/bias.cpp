@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
+#include <functional>
 
-#include "scenes/sky.hpp"
 #include "tools/bench/maps_bench.hpp"
 #include "tools/bench/path_reference.hpp"
 #include "tools/metrics.hpp"
@@ -32,17 +31,14 @@ struct Sweep {
 class Experiment {
 public:
     Experiment(engine::Device& device, const BenchOptions& options, const RowSink& sink)
-        : device_(device), options_(options), sink_(sink), source_(options.scene.empty() ? "builtin:atrium" : options.scene), scene_(scenes::load(source_, options.seed)) {
-        scenes::apply_sky(scene_, scenes::SkyChoice::automatic);
-        triangles_ = scenes::flatten(scene_);
-        camera_ = scenes::pick_camera(scene_, triangles_, options.camera);
+        : device_(device), options_(options), sink_(sink), still_(options, "builtin:atrium") {
         exact_ = frame_settings(options, options.views.empty() ? 1024 : options.views[0]);
         exact_.visibility = Visibility::rays;
         exact_.bounces = options.bounces;
         exact_.subset = 0;
         exact_.filter = false;
         if (const auto folder = engine::default_cache_folder(); !folder.empty()) exact_.cache = &cache_.emplace(folder);
-        std::printf("scene: %s, %zu triangles, %u VPLs\n", source_.c_str(), size_t(triangles_.count()), exact_.vpls);
+        std::printf("scene: %s, %zu triangles, %u VPLs\n", still_.source.c_str(), size_t(still_.triangles.count()), exact_.vpls);
     }
 
     void run() {
@@ -59,8 +55,8 @@ public:
                 sweep(gather, all, {filter ? "--gather subset" : "--gather subset, --filter off", "VPLs a pixel", {16, 64, 256}, [](FrameSettings& s, float v) { s.subset = uint32_t(v); }});
             }
         if (!wanted("vpl-bound")) return;
-        const scenes::Triangles flat = scenes::flatten(scene_, scenes::Sharing::never);
-        const Image traced = path_reference(options_, std::filesystem::path(source_).filename().string(), scene_, flat, camera_, exact_).image;
+        const scenes::Triangles flat = scenes::flatten(still_.scene, scenes::Sharing::never);
+        const Image traced = path_reference(options_, still_.name(), still_.scene, flat, still_.camera, exact_).image;
         image_of(exact_);
         const float usual = usual_bound_;
         sweep(exact_, traced, {"--vpl-bound", "of the usual one", {0.01f, 0.1f, 1, 10, 100, 1000}, [usual](FrameSettings& s, float v) { s.vpl_bound = v * usual; }});
@@ -70,8 +66,8 @@ private:
     bool wanted(const char* parameter) const { return options_.parameters.empty() || std::ranges::find(options_.parameters, parameter) != options_.parameters.end(); }
 
     Image image_of(const FrameSettings& settings) {
-        passes::Frame frame(device_, scene_, triangles_, settings);
-        frame.render(camera_);
+        passes::Frame frame(device_, still_.scene, still_.triangles, settings);
+        frame.render(still_.camera);
         usual_bound_ = frame.vpl_bound();
         ms_ = 0;
         for (const engine::PassTime& pass : frame.times()) ms_ += pass.gpu_ms;
@@ -79,21 +75,21 @@ private:
     }
 
     void sweep(const FrameSettings& base, const Image& reference, const Sweep& s) {
-        Plot plot{.title = std::string(s.parameter) + ": error of the image, " + std::filesystem::path(source_).filename().string(), .x_label = std::string(s.parameter) + ", " + s.unit, .y_label = "error",
+        Plot plot{.title = std::string(s.parameter) + ": error of the image, " + still_.name(), .x_label = std::string(s.parameter) + ", " + s.unit, .y_label = "error",
                   .lines = {{"relMSE", "#0072B2", {}}, {"FLIP", "#D55E00", {}}, {"light lost or gained", "#009E73", {}}}, .logarithmic = true};
         for (const float value : s.values) {
             FrameSettings settings = base;
             s.set(settings, value);
             const Image image = image_of(settings);
-            Metrics m = measure(reference, image, 0.01);
-            measure_flip(m, reference, image);
+            const Metrics m = measure(reference, image, 0.01);
+            const double flip = mean_flip(reference, image);
             const double light = indirect_light(image) / indirect_light(reference) - 1;
-            BenchRow row = maps_row("bias", source_, choice_name(visibilities(), settings.visibility).c_str(), settings);
+            BenchRow row = maps_row("bias", still_.source, choice_name(visibilities(), settings.visibility).c_str(), settings);
             row.settings["parameter"] = s.parameter, row.settings["value"] = value;
-            row.error = {{"relMSE", m.rel_mse}, {"FLIP", m.flip}, {"SSIM", m.ssim}, {"light", light}};
+            row.error = {{"relMSE", m.rel_mse}, {"FLIP", flip}, {"SSIM", m.ssim}, {"light", light}};
             row.ms.ms = {ms_};
             sink_(row);
-            const double heights[] = {m.rel_mse, m.flip, std::abs(light)};
+            const double heights[] = {m.rel_mse, flip, std::abs(light)};
             for (size_t i = 0; i < 3; ++i)
                 if (heights[i] > 0) plot.lines[i].points.push_back({value, heights[i]});
         }
@@ -108,11 +104,8 @@ private:
     engine::Device& device_;
     const BenchOptions& options_;
     const RowSink& sink_;
-    std::string source_;
     std::optional<engine::Cache> cache_;
-    scenes::Scene scene_;
-    scenes::Triangles triangles_;
-    scenes::Camera camera_;
+    StillScene still_;
     FrameSettings exact_;
     float usual_bound_ = 0;  // of the frame that was rendered last
     double ms_ = 0;          // on the device, of the same

@@ -1,17 +1,14 @@
 // `myriad bench error`: speed against total error. For each scene every technique is tried with many settings; each image is judged against a path-traced reference
 // (tools/reference), and of each technique the best within every budget of time counts. Competitors in the same run: the same VPLs with exact rays, imperfect shadow
-// maps, maps of all triangles, and the path tracer itself, stopped at each budget. The best within about a second is taken apart: what the VPLs, the maps, their level
+// maps, maps of all triangles, and the path tracer itself, stopped at each budget. The best within the middle budget is taken apart: what the VPLs, the maps, their level
 // of detail, the gather and the filter cost, each by itself. `--report` writes it all as one HTML file.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <memory>
-#include <numeric>
 
 #include "passes/tonemap/tonemap_io.h"
-#include "scenes/sky.hpp"
 #include "tools/bench/maps_bench.hpp"
 #include "tools/bench/path_reference.hpp"
 #include "tools/exposure.hpp"
@@ -47,12 +44,18 @@ struct Candidate {
     std::vector<uint32_t> vpls;  // rising
 };
 
+// What makes the image again, beside the scene and the report's size and bounces.
 std::string options_of(const FrameSettings& s) {
+    const FrameSettings usual;
     std::string text = "--visibility " + choice_name(visibilities(), s.visibility) + " --vpls " + std::to_string(s.vpls) + " --gather " + show_gather(s);
+    if (s.seed != usual.seed) text += " --seed " + std::to_string(s.seed);
     if (s.visibility == Visibility::rays) return text;
     text += " --map-size " + std::to_string(s.maps.map_size);
-    if (s.visibility == Visibility::manylods || s.visibility == Visibility::megaviews) text += " --tree " + show_tree(s);
-    if (!s.filter) text += " --filter off";
+    if (s.log2_samples != usual.log2_samples && s.visibility != Visibility::brute) text += " --samples " + std::to_string(s.log2_samples);
+    if (s.visibility != Visibility::manylods && s.visibility != Visibility::megaviews) return text;
+    text += " --tree " + show_tree(s);
+    if (s.maps.arity != usual.maps.arity) text += " --arity " + std::to_string(s.maps.arity);
+    if (s.maps.epsilon != usual.maps.epsilon) text += " --epsilon " + show_number(s.maps.epsilon);
     return text;
 }
 
@@ -76,10 +79,9 @@ std::vector<Candidate> candidates(const FrameSettings& base) {
     return all;
 }
 
-std::map<std::string, double> judge(const Image& reference, const Image& test) {
+std::map<std::string, double> errors_of(const Image& reference, const Image& test) {
     const Metrics m = measure(reference, test, 0.01);
-    const std::vector<float> flip = flip_errors(Flip::ldr, reference, test);
-    return {{"relMSE", m.rel_mse}, {"FLIP", std::accumulate(flip.begin(), flip.end(), 0.0) / double(flip.size())}, {"SSIM", m.ssim}};
+    return {{"relMSE", m.rel_mse}, {"FLIP", mean_flip(reference, test)}, {"SSIM", m.ssim}};
 }
 
 Picture toned(const Image& image, float exposure) {
@@ -91,26 +93,21 @@ Picture toned(const Image& image, float exposure) {
 
 class SceneErrors {
 public:
-    SceneErrors(engine::Device& device, const BenchOptions& options, const std::string& source, const RowSink& sink)
-        : device_(device), options_(options), sink_(sink), scene_(scenes::load(source, options.seed)) {
-        scenes::apply_sky(scene_, scenes::SkyChoice::automatic);
-        triangles_ = scenes::flatten(scene_);
-        camera_ = scenes::pick_camera(scene_, triangles_, options.camera);
-        base_ = frame_settings(options, 0);
+    SceneErrors(engine::Device& device, const BenchOptions& options, const RowSink& sink)
+        : device_(device), options_(options), sink_(sink), still_(options, "builtin:cornell"), base_(frame_settings(options, 0)) {
         base_.width = options.width, base_.height = options.height;
         base_.bounces = options.bounces;
-        base_.maps.epsilon = 2;
         if (const auto folder = engine::default_cache_folder(); !folder.empty()) base_.cache = &cache_.emplace(folder);
-        out_.name = std::filesystem::path(source).filename().string(), out_.camera = options.camera;
-        out_.triangles = triangles_.count(), out_.width = base_.width, out_.height = base_.height, out_.bounces = base_.bounces;
+        out_.name = still_.name(), out_.camera = options.camera;
+        out_.triangles = still_.triangles.count(), out_.width = base_.width, out_.height = base_.height, out_.bounces = base_.bounces;
         out_.budgets = options.budgets;
         std::ranges::sort(out_.budgets);
-        std::printf("scene: %s, %llu triangles, %ux%u, bounces %u\n", source.c_str(), static_cast<unsigned long long>(out_.triangles), base_.width, base_.height, base_.bounces);
+        std::printf("scene: %s, %llu triangles, %ux%u, bounces %u\n", still_.source.c_str(), static_cast<unsigned long long>(out_.triangles), base_.width, base_.height, base_.bounces);
     }
 
     ReportScene run() {
-        flat_ = scenes::flatten(scene_, scenes::Sharing::never);
-        const PathReference made = path_reference(options_, out_.name, scene_, flat_, camera_, base_);
+        flat_ = scenes::flatten(still_.scene, scenes::Sharing::never);
+        const PathReference made = path_reference(options_, out_.name, still_.scene, flat_, still_.camera, base_);
         reference_ = made.image, out_.reference_samples = made.samples, out_.reference_noise = made.noise;
         progress_.show("tracing paths", 0);
         trace();
@@ -130,6 +127,7 @@ public:
 
 private:
     double longest() const { return out_.budgets.back(); }
+    double middle() const { return out_.budgets[out_.budgets.size() / 2]; }
 
     // The path tracer, looked at whenever a budget is about to be spent. What looking takes does not count.
     void trace() {
@@ -148,13 +146,13 @@ private:
             }
             return next < out_.budgets.size();
         };
-        reference::Reference(scene_, scene_.lights, flat_, camera_, settings).add_to(film);
+        reference::Reference(still_.scene, still_.scene.lights, flat_, still_.camera, settings).add_to(film);
     }
 
     void add_path_trial(const reference::Film& film, double spent) {
         Trial trial{path_group, "path-tracer", "--spp " + std::to_string(film.samples()), {spent}, {}};
         const Image image = film.image(false);
-        trial.error = judge(reference_, image);
+        trial.error = errors_of(reference_, image);
         images_.push_back(image);
         out_.trials.push_back(std::move(trial));
         settings_.emplace_back();
@@ -164,17 +162,17 @@ private:
         for (const uint32_t vpls : candidate.vpls) {
             FrameSettings settings = candidate.settings;
             settings.vpls = vpls;
-            passes::Frame frame(device_, scene_, triangles_, settings);
+            passes::Frame frame(device_, still_.scene, still_.triangles, settings);
             double from = now();
-            frame.render(camera_);  // warms up
+            frame.render(still_.camera);  // warms up
             if (now() - from > 2 * longest()) return;
             from = now();
-            frame.render(camera_);
+            frame.render(still_.camera);
             const double seconds = now() - from;
             if (seconds > longest()) return;  // with more VPLs it takes longer
             Trial trial{candidate.group, candidate.technique, options_of(settings), {seconds}, {}};
             Image image = read_image(device_, frame, {});
-            trial.error = judge(reference_, image);
+            trial.error = errors_of(reference_, image);
             images_.push_back(std::move(image));
             out_.trials.push_back(std::move(trial));
             settings_.push_back(settings);
@@ -192,12 +190,12 @@ private:
         best.erase(std::unique(best.begin(), best.end()), best.end());
         for (const size_t i : best) {
             progress_.show("timing the best of " + out_.name, 0);
-            passes::Frame frame(device_, scene_, triangles_, *settings_[i]);
-            frame.render(camera_);
+            passes::Frame frame(device_, still_.scene, still_.triangles, *settings_[i]);
+            frame.render(still_.camera);
             std::vector<double> runs;
             for (uint32_t r = 0; r < options_.repeats; ++r) {
                 const double from = now();
-                frame.render(camera_);
+                frame.render(still_.camera);
                 runs.push_back(now() - from);
             }
             out_.trials[i].runs = runs;
@@ -205,14 +203,14 @@ private:
     }
 
     Image image_of(FrameSettings settings) {
-        passes::Frame frame(device_, scene_, triangles_, settings);
-        frame.render(camera_);
+        passes::Frame frame(device_, still_.scene, still_.triangles, settings);
+        frame.render(still_.camera);
         return read_image(device_, frame, {});
     }
 
     // What each shortcut costs, with all else exact. All VPLs are gathered where the gather is not what is looked at, so there should not be too many.
     void take_apart() {
-        const auto best = best_within(out_.trials, myriad_group, "FLIP", out_.budgets[out_.budgets.size() / 2]);
+        const auto best = best_within(out_.trials, myriad_group, "FLIP", middle());
         if (!best) return;
         FrameSettings chosen = *settings_[*best];
         chosen.vpls = std::min(chosen.vpls, 1024u);
@@ -220,10 +218,11 @@ private:
         FrameSettings exact = chosen;
         exact.visibility = Visibility::rays, exact.octree_levels = 0, exact.gather = GatherMethod::subset, exact.subset = 0, exact.filter = false;
         const Image all = image_of(exact);
-        const auto part = [&](const char* what, const char* against, const Image& reference, const Image& test) { out_.parts.push_back({what, against, judge(reference, test)}); };
-        part("everything", "path-traced reference", reference_, image_of(chosen));
+        const auto part = [&](const char* what, const char* against, const Image& reference, const Image& test) { out_.parts.push_back({what, against, errors_of(reference, test)}); };
+        const Image made = image_of(chosen);
+        part("everything", "path-traced reference", reference_, made);
         part("VPLs: few, bounded, diffuse", "path-traced reference", reference_, all);
-        part("maps, gather and filter", "exact rays to all of the same VPLs", all, image_of(chosen));
+        part("maps, gather and filter", "exact rays to all of the same VPLs", all, made);
         FrameSettings maps = exact;
         maps.visibility = chosen.visibility, maps.octree_levels = chosen.octree_levels;
         const Image drawn = image_of(maps);
@@ -235,8 +234,7 @@ private:
         part("level of detail alone", "maps of all triangles", triangles, drawn);
         FrameSettings gather = exact;
         gather.gather = chosen.gather, gather.subset = chosen.subset;
-        const Image gathered = image_of(gather);
-        part("gather: some VPLs for each pixel, no filter", "exact rays to all of the same VPLs", all, gathered);
+        part("gather: some VPLs for each pixel, no filter", "exact rays to all of the same VPLs", all, image_of(gather));
         gather.filter = true;
         part("gather and filter", "exact rays to all of the same VPLs", all, image_of(gather));
         std::printf("the error of %s, taken apart:\n", out_.parts_of.c_str());
@@ -247,13 +245,14 @@ private:
         const double exposure = auto_exposure(*reference_.rgb());
         const auto picture = [&](const Image& image) { return toned(image, float(exposure)); };
         out_.pictures.push_back({{"reference", picture(reference_)}});
-        for (const double budget : {out_.budgets[out_.budgets.size() / 2]})
-            for (const char* group : {myriad_group, rays_group, ism_group, path_group})
-                if (const auto i = best_within(out_.trials, group, "FLIP", budget)) {
-                    char title[160];
-                    std::snprintf(title, sizeof title, "%s, %.2g s: FLIP %.3f, relMSE %.3g", group, out_.trials[*i].seconds(), out_.trials[*i].error.at("FLIP"), out_.trials[*i].error.at("relMSE"));
-                    out_.pictures.push_back({{title, picture(images_[*i])}, {std::string("FLIP of ") + group, heat_map(flip_errors(Flip::ldr, reference_, images_[*i]), reference_.width, reference_.height, 1)}});
-                }
+        for (const char* group : {myriad_group, rays_group, ism_group, path_group})
+            if (const auto i = best_within(out_.trials, group, "FLIP", middle())) {
+                const Trial& t = out_.trials[*i];
+                char title[160];
+                std::snprintf(title, sizeof title, "%s, %.2g s: FLIP %.3f, relMSE %.3g", group, t.seconds(), t.error.at("FLIP"), t.error.at("relMSE"));
+                const std::vector<float> flip = flip_errors(Flip::ldr, reference_, images_[*i]);
+                out_.pictures.push_back({{title, picture(images_[*i])}, {std::string("FLIP of ") + group, heat_map(flip, reference_.width, reference_.height, 1)}});
+            }
     }
 
     void emit(const Trial& t) const {
@@ -270,9 +269,8 @@ private:
     const RowSink& sink_;
     Progress progress_{false};
     std::optional<engine::Cache> cache_;  // trees are built once a scene
-    scenes::Scene scene_;
-    scenes::Triangles triangles_, flat_;
-    scenes::Camera camera_;
+    StillScene still_;
+    scenes::Triangles flat_;
     FrameSettings base_;
     Image reference_;
     std::vector<Image> images_;                          // by trial
@@ -295,13 +293,20 @@ void bench_error(engine::Device& device, const BenchOptions& options, const RowS
     require_folder(options.references);
     Report report;
     const std::vector<std::string> scenes = options.scenes.empty() ? std::vector<std::string>{options.scene.empty() ? "builtin:cornell" : options.scene} : options.scenes;
-    report.command = "myriad bench error --scenes";
-    for (const std::string& scene : scenes) report.command += (&scene == scenes.data() ? " " : ",") + scene;
+    const auto list = [](const auto& values, const auto& show) {
+        std::string text;
+        for (const auto& value : values) text += (text.empty() ? " " : ",") + show(value);
+        return text;
+    };
+    report.command = "myriad bench error --scenes" + list(scenes, [](const std::string& scene) { return scene; }) + " --budgets" + list(options.budgets, [](double s) { return show_number(float(s)); }) +
+                     " --repeat " + std::to_string(options.repeats) + " --reference-seconds " + show_number(float(options.reference_seconds));
     report.device = device.info().name, report.driver = device.info().driver_version, report.cpu = cpu_name(), report.revision = git_revision;
     report.groups = {myriad_group, path_group, rays_group, ism_group, brute_group};
     report.metrics = {"relMSE", "FLIP"};
     for (const std::string& scene : scenes) {
-        report.scenes.push_back(SceneErrors(device, options, scene, sink).run());
+        BenchOptions of_scene = options;
+        of_scene.scene = scene;
+        report.scenes.push_back(SceneErrors(device, of_scene, sink).run());
         // After each scene: what takes long may be interrupted.
         if (!options.report.empty()) write_text(options.report, to_html(report));
         if (!options.csv.empty()) write_text(options.csv, to_csv(report));

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 
 #include "compute/derived/derived.hpp"
@@ -14,7 +13,6 @@
 #include "passes/maps/maps.hpp"
 #include "passes/pick/pick.hpp"
 #include "passes/vpl/vpl.hpp"
-#include "scenes/sky.hpp"
 #include "tools/bench/maps_bench.hpp"
 #include "tools/metrics.hpp"
 
@@ -39,20 +37,16 @@ struct Gatherer {
 class Experiment {
 public:
     Experiment(engine::Device& device, const BenchOptions& options)
-        : device_(device), options_(options), source_(options.scene.empty() ? "builtin:atrium" : options.scene), scene_([&] {
-              scenes::Scene loaded = scenes::load(source_, options.seed);
-              scenes::apply_sky(loaded, scenes::SkyChoice::automatic);
-              return loaded;
-          }()), triangles_(scenes::flatten(scene_)), data_(passes::geometry_data(scene_, triangles_)), camera_(scenes::pick_camera(scene_, triangles_, options.camera)),
-          geometry_(device, triangles_, data_), table_(device, scene_, triangles_, data_), derived_(data_.world, nullptr),
+        : device_(device), options_(options), still_(options, "builtin:atrium"), data_(passes::geometry_data(still_.scene, still_.triangles)),
+          geometry_(device, still_.triangles, data_), table_(device, still_.scene, still_.triangles, data_), derived_(data_.world, nullptr),
           bvh_(derived_.bvh(device, compute::BvhQuality::quick, geometry_.opacity())), tree_(derived_.bsh(device, options.log2_samples, options.seed, options.arity)),
           gbuffer_(device, width, height, bvh_.constants()), recorder_(device) {
-        if (tree_.empty()) throw InputError("\"" + source_ + "\" has no surface to sample; give another --scene");
-        if (table_.power() <= 0) throw InputError("\"" + source_ + "\" has no light that makes VPLs; give another --scene");
-        std::printf("scene: %s, %zu triangles, 2^%u samples, maps 2 x %u^2, epsilon %g, %u bounces, %ux%u\n", source_.c_str(), size_t(data_.world.count()), options.log2_samples,
+        if (tree_.empty()) throw InputError("\"" + still_.source + "\" has no surface to sample; give another --scene");
+        if (table_.power() <= 0) throw InputError("\"" + still_.source + "\" has no light that makes VPLs; give another --scene");
+        std::printf("scene: %s, %zu triangles, 2^%u samples, maps 2 x %u^2, epsilon %g, %u bounces, %ux%u\n", still_.source.c_str(), size_t(data_.world.count()), options.log2_samples,
                     options.map_size, options.epsilon, options.bounces, width, height);
         tree_.refit(recorder_, geometry_.positions(), geometry_.triangles(), geometry_.instances(), geometry_.opacity());
-        gbuffer_.record(recorder_, geometry_, bvh_, camera_);
+        gbuffer_.record(recorder_, geometry_, bvh_, still_.camera);
         recorder_.submit_and_wait();
         recorder_.take_times();
     }
@@ -99,13 +93,13 @@ public:
     }
 
 private:
-    passes::MapScene map_scene() const { return {.tree = &tree_, .low = triangles_.lo, .high = triangles_.hi, .geometry = &geometry_}; }
+    passes::MapScene map_scene() const { return {.tree = &tree_, .low = still_.triangles.lo, .high = still_.triangles.hi, .geometry = &geometry_}; }
 
     std::unique_ptr<Gatherer> begin(const char* technique, uint32_t vpls, uint32_t k, uint32_t block) {
         auto g = std::make_unique<Gatherer>();
         g->block = block;
         g->row.bench = "gather";
-        g->row.scene = std::filesystem::path(source_).filename().string();
+        g->row.scene = still_.name();
         g->row.technique = technique;
         g->row.views = vpls;
         g->row.settings = {{"bounces", options_.bounces}, {"map_size", options_.map_size}, {"epsilon", options_.epsilon}, {"block", block}, {"width", width}, {"height", height}};
@@ -174,7 +168,7 @@ private:
             if (all[i]->filter) {
                 auto scope = recorder_.scope("filter");
                 all[i]->filter->record(recorder_, gbuffer_.gbuffer(), all[i]->pick ? all[i]->pick->irradiance() : all[i]->gather->irradiance(), all[i]->block,
-                                       2 * std::tan(camera_.yfov / 2) / float(height));
+                                       2 * std::tan(still_.camera.yfov / 2) / float(height));
             }
             recorder_.submit_and_wait();
             take(&stages[i]);
@@ -212,11 +206,8 @@ private:
     static constexpr float bias = 0.5f;
     engine::Device& device_;
     const BenchOptions& options_;
-    std::string source_;
-    scenes::Scene scene_;
-    scenes::Triangles triangles_;
+    StillScene still_;
     passes::GeometryData data_;
-    scenes::Camera camera_;
     passes::Geometry geometry_;
     passes::LightTable table_;
     compute::Derived derived_;

@@ -26,6 +26,15 @@ passes::FrameSettings frame_settings(const BenchOptions& options, uint32_t views
     return settings;
 }
 
+StillScene::StillScene(const BenchOptions& options, const std::string& otherwise)
+    : source(options.scene.empty() ? otherwise : options.scene), scene(scenes::load(source, options.seed)) {
+    scenes::apply_sky(scene, scenes::SkyChoice::automatic);
+    triangles = scenes::flatten(scene);
+    camera = scenes::pick_camera(scene, triangles, options.camera);
+}
+
+std::string StillScene::name() const { return std::filesystem::path(source).filename().string(); }
+
 Turntable load_turntable(const BenchOptions& options) {
     Turntable table;
     table.source = options.scene.empty() ? "builtin:hairball" : options.scene;

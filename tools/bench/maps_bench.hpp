@@ -11,6 +11,18 @@ namespace myriad::tools {
 // 320 x 180 pixels, `views` VPLs, and the options' maps, samples and seed.
 passes::FrameSettings frame_settings(const BenchOptions& options, uint32_t views);
 
+// A scene at rest, with the default sky where it has no light. `source`: of the options, or `otherwise` where they name none.
+struct StillScene {
+    StillScene(const BenchOptions& options, const std::string& otherwise);
+    StillScene(const StillScene&) = delete;
+    std::string name() const;  // without folders
+
+    std::string source;
+    scenes::Scene scene;
+    scenes::Triangles triangles;
+    scenes::Camera camera;
+};
+
 // A scene whose lights go around it, without those that are emitting surfaces.
 struct Turntable {
     std::string source;

@@ -4,9 +4,7 @@
 //   tree does: its octree with fewer and more levels.
 //   `myriad bench coverage`: what nodes smaller than a texel cover, and how much light that loses or lets through.
 #include <cstdio>
-#include <filesystem>
 
-#include "scenes/sky.hpp"
 #include "tools/bench/maps_bench.hpp"
 #include "tools/exposure.hpp"
 #include "tools/metrics.hpp"
@@ -22,11 +20,8 @@ using passes::Visibility;
 class Experiment {
 public:
     Experiment(const char* bench, engine::Device& device, const BenchOptions& options, const RowSink& sink)
-        : bench_(bench), device_(device), options_(options), sink_(sink), source_(options.scene.empty() ? "builtin:atrium" : options.scene), scene_(scenes::load(source_, options.seed)) {
-        scenes::apply_sky(scene_, scenes::SkyChoice::automatic);
-        triangles_ = scenes::flatten(scene_);
-        camera_ = scenes::pick_camera(scene_, triangles_, options.camera);
-        std::printf("scene: %s, %zu triangles, epsilon %g\n", source_.c_str(), size_t(triangles_.count()), options.epsilon);
+        : bench_(bench), device_(device), options_(options), sink_(sink), still_(options, "builtin:atrium") {
+        std::printf("scene: %s, %zu triangles, epsilon %g\n", still_.source.c_str(), size_t(still_.triangles.count()), options.epsilon);
     }
 
     void resolution(uint32_t views) {
@@ -75,10 +70,10 @@ private:
     // A first frame that warms up, then those that count. Without a reference it is the reference that is made: once, and no row.
     Image render(const passes::FrameSettings& settings, const char* technique, const Image* reference) {
         device_.reset_memory_peaks();
-        passes::Frame frame(device_, scene_, triangles_, settings);
-        BenchRow row = maps_row(bench_, source_, technique, settings);
+        passes::Frame frame(device_, still_.scene, still_.triangles, settings);
+        BenchRow row = maps_row(bench_, still_.source, technique, settings);
         for (uint32_t r = 0; r <= (reference ? options_.repeats : 0); ++r) {
-            frame.render(camera_);
+            frame.render(still_.camera);
             if (r > 0) add_maps_times(row, frame);
         }
         const Image image = read_image(device_, frame, {"indirect"});
@@ -107,10 +102,7 @@ private:
     engine::Device& device_;
     const BenchOptions& options_;
     const RowSink& sink_;
-    std::string source_;
-    scenes::Scene scene_;
-    scenes::Triangles triangles_;
-    scenes::Camera camera_;
+    StillScene still_;
     double exposure_ = 1;  // the reference's, for all pictures
 };
 

@@ -11,7 +11,6 @@
 #include "passes/gathering/gathering.hpp"
 #include "passes/gbuffer/gbuffer.hpp"
 #include "passes/vpl/vpl.hpp"
-#include "scenes/sky.hpp"
 #include "tools/bench/maps_bench.hpp"
 #include "tools/metrics.hpp"
 #include "tools/output_file.hpp"
@@ -46,20 +45,10 @@ const Technique techniques[] = {
 };
 
 // Of the scene, what all rows share. Its parts refer to one another.
-struct Setting {
-    std::string source;
-    scenes::Scene scene;
-    scenes::Triangles triangles;
-    passes::GeometryData data;
-    scenes::Camera camera;
+struct Setting : StillScene {
+    explicit Setting(const BenchOptions& options) : StillScene(options, "builtin:atrium"), data(passes::geometry_data(scene, triangles)) {}
 
-    explicit Setting(const BenchOptions& options)
-        : source(options.scene.empty() ? "builtin:atrium" : options.scene), scene([&] {
-              scenes::Scene loaded = scenes::load(source, options.seed);
-              scenes::apply_sky(loaded, scenes::SkyChoice::automatic);
-              return loaded;
-          }()), triangles(scenes::flatten(scene)), data(passes::geometry_data(scene, triangles)), camera(scenes::pick_camera(scene, triangles, options.camera)) {}
-    Setting(const Setting&) = delete;
+    passes::GeometryData data;
 };
 
 // The slope of log ms over log views, least squares.
@@ -140,7 +129,7 @@ public:
     }
 
     Plot plot() const {
-        return {"Maps of views of " + std::filesystem::path(setting_.source).filename().string(), "views", "maps, ms", lines_, true};
+        return {"Maps of views of " + setting_.name(), "views", "maps, ms", lines_, true};
     }
 
     std::string csv() const {
@@ -204,7 +193,7 @@ private:
     BenchRow measure_maps(const Technique& technique, const Distribution& distribution, const Lights& lights, uint32_t count) {
         BenchRow row;
         row.bench = "megaviews-views";
-        row.scene = std::filesystem::path(setting_.source).filename().string();
+        row.scene = setting_.name();
         row.technique = technique.name;
         row.views = count;
         row.settings = {{"distribution", distribution.name}, {"map_size", options_.map_size}};

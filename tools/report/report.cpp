@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "tools/plot.hpp"
+#include "tools/xml.hpp"
 
 namespace myriad::tools {
 namespace {
@@ -44,7 +45,7 @@ std::string plot_of(const Report& report, const ReportScene& scene, const std::s
 
 std::string budget_table(const Report& report, const ReportScene& scene, const std::string& metric) {
     std::vector<std::string> head = {"budget, s"};
-    for (const std::string& group : report.groups) head.push_back(html_escaped(group));
+    for (const std::string& group : report.groups) head.push_back(xml_escaped(group));
     std::string rows = row(head, "th");
     for (const double budget : scene.budgets) {
         std::vector<std::string> cells = {number(budget)};
@@ -61,24 +62,24 @@ std::string budget_table(const Report& report, const ReportScene& scene, const s
             const Trial& t = scene.trials[*best];
             const std::string value = number(t.error.at(metric), "%.4g");
             cells.push_back((t.error.at(metric) == *least ? element("b", value) : value) +
-                            element("small", "<br>" + number(t.seconds()) + " s: " + html_escaped(t.options)));
+                            element("small", "<br>" + number(t.seconds()) + " s: " + xml_escaped(t.options)));
         }
         rows += row(cells);
     }
-    return element("h3", html_escaped(metric) + " within a budget") + "\n" + element("table", rows) + "\n";
+    return element("h3", xml_escaped(metric) + " within a budget") + "\n" + element("table", rows) + "\n";
 }
 
 std::string parts_table(const ReportScene& scene) {
     if (scene.parts.empty()) return "";
     std::vector<std::string> head = {"what is wrong", "measured against"};
-    for (const auto& [metric, value] : scene.parts.front().error) head.push_back(html_escaped(metric));
+    for (const auto& [metric, value] : scene.parts.front().error) head.push_back(xml_escaped(metric));
     std::string rows = row(head, "th");
     for (const ErrorPart& part : scene.parts) {
-        std::vector<std::string> cells = {html_escaped(part.what), html_escaped(part.against)};
+        std::vector<std::string> cells = {xml_escaped(part.what), xml_escaped(part.against)};
         for (const auto& [metric, value] : part.error) cells.push_back(number(value, "%.4g"));
         rows += row(cells);
     }
-    return element("h3", "What the error is made of") + "\n" + element("p", "Of " + element("code", html_escaped(scene.parts_of)) + ", each part by itself.") + "\n" + element("table", rows) + "\n";
+    return element("h3", "What the error is made of") + "\n" + element("p", "Of " + element("code", xml_escaped(scene.parts_of)) + ", each part by itself.") + "\n" + element("table", rows) + "\n";
 }
 
 std::string pictures_of(const ReportScene& scene) {
@@ -87,7 +88,7 @@ std::string pictures_of(const ReportScene& scene) {
         std::string figures;
         for (const auto& [title, picture] : shown) {
             const std::vector<char> png = png_bytes(picture);
-            figures += "<figure><img alt=\"" + html_escaped(title) + "\" src=\"data:image/png;base64," + base64({png.data(), png.size()}) + "\"><figcaption>" + html_escaped(title) +
+            figures += "<figure><img alt=\"" + xml_escaped(title) + "\" src=\"data:image/png;base64," + base64({png.data(), png.size()}) + "\"><figcaption>" + xml_escaped(title) +
                        "</figcaption></figure>\n";
         }
         out += "<div class=\"pictures\">\n" + figures + "</div>\n";
@@ -131,14 +132,14 @@ std::optional<size_t> best_within(std::span<const Trial> trials, std::string_vie
 std::string to_html(const Report& report) {
     std::string out = "<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>Myriad: speed against error</title><style>" + std::string(style) + "</style>\n";
     out += element("h1", "Speed against error") + "\n";
-    out += element("p", "Made by " + element("code", html_escaped(report.command)) + ", Myriad " + html_escaped(report.revision) + ", on " + html_escaped(report.device) + " (" +
-                            html_escaped(report.driver) + "), " + html_escaped(report.cpu) + ".") + "\n";
+    out += element("p", "Made by " + element("code", xml_escaped(report.command)) + ", Myriad " + xml_escaped(report.revision) + ", on " + xml_escaped(report.device) + " (" +
+                            xml_escaped(report.driver) + "), " + xml_escaped(report.cpu) + ".") + "\n";
     out += element("p", "Errors are against a path-traced reference without virtual lights, made on the CPU by code of its own (<code>myriad reference</code>). Seconds are of one frame on a warm device, all "
                         "passes included; loading, and trees that are built once a scene, are not, for any technique. Of each technique the best settings found are shown, so each is at its best at every "
                         "time. relMSE is the mean of (t&nbsp;−&nbsp;r)²/(r²&nbsp;+&nbsp;0.01), dominated by bright outliers; FLIP is the mean difference that is seen when two images are flipped, 0 to 1. "
                         "A path tracer's error is noise, and falls with time; virtual lights' is bias, and stays.") + "\n";
     for (const ReportScene& scene : report.scenes) {
-        out += element("h2", html_escaped(scene.name + (scene.camera.empty() ? "" : ", camera " + scene.camera))) + "\n";
+        out += element("h2", xml_escaped(scene.name + (scene.camera.empty() ? "" : ", camera " + scene.camera))) + "\n";
         out += element("p", std::to_string(scene.triangles) + " triangles, " + std::to_string(scene.width) + "×" + std::to_string(scene.height) + ", bounces of indirect light: " +
                                 std::to_string(scene.bounces) + ". Reference: " + std::to_string(scene.reference_samples) + " paths a pixel, whose own noise is a relMSE of about " +
                                 number(scene.reference_noise) + ".") + "\n<div class=\"plots\">\n";
