@@ -160,8 +160,10 @@ TEST_F(goldens, blessing_replaces_and_logs) {
 TEST_F(goldens, blessing_begins_where_there_are_none) {
     std::filesystem::remove_all(golden);
     EXPECT_EQ(compare({}).status, 2);
+    put_image(test / "two\nlines.exr", 0.5f);
     EXPECT_EQ(compare({"--bless", "the first"}, "").status, 0);
-    EXPECT_EQ(exr_names(golden), (std::vector<std::string>{"a.exr", "b.exr", "deep/c.exr"}));
+    EXPECT_TRUE(contains(log(), "\n  two lines.exr: new\n")) << log();
+    EXPECT_EQ(exr_names(golden), (std::vector<std::string>{"a.exr", "b.exr", "deep/c.exr", "two\nlines.exr"}));
 }
 
 TEST_F(goldens, blessing_refuses_and_changes_nothing) {
