@@ -23,6 +23,11 @@ inline Arguments operator+(Arguments a, const Arguments& b) {
     return a;
 }
 
+inline Environment operator+(Environment a, const Environment& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+}
+
 struct Outcome {
     int status = -1;  // 128 + signal when one ended it, as in a shell
     std::string out, err;
