@@ -1,5 +1,8 @@
 // Programs run through the layer: Myriad itself, and a plain one for what Myriad does not do.
+#include <cstdlib>
+
 #include "tests/profiler_layer/layer_run.hpp"
+#include "tools/profiler_layer/settings.hpp"
 
 namespace myriad::profiler {
 namespace {
@@ -195,6 +198,43 @@ TEST(ProfilerLayer, DevicesHaveTracks) {
     const Measured measured = plain(folder, "devices");
     EXPECT_EQ(measured.count("region,one") + measured.count("region,other"), 2);
     EXPECT_EQ(std::ranges::count_if(measured.tracks(), [](const std::string& name) { return contains(name, "queue 0.0: frames"); }), 2);
+}
+
+TEST(ProfilerLayer, InstalledTheLoaderFindsIt) {
+    const TempFolder folder;
+    const std::string prefix = folder / "prefix", log = folder / "log";
+    ASSERT_EQ(std::system(("cmake --install " MYRIAD_BUILD " --component layer --prefix " + prefix + " >" + log + " 2>&1").c_str()), 0) << bytes_of(log);
+    Environment environment = with_layer(folder / "");
+    environment.front() = {"XDG_DATA_DIRS", prefix + "/share:/usr/local/share:/usr/share"};  // in place of VK_LAYER_PATH, which names the build's folder
+    const Outcome outcome = myriad_program({"again"}, environment, MYRIAD_PLAIN_VULKAN);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(read_measured(folder / "trace.json", folder / "trace.csv").count("region,again"), 3);
+}
+
+// Keys, variables and values that vkconfig offers are those that the layer understands: read from the manifest, tried one by one.
+TEST(ProfilerLayer, ItsManifestOffersWhatItUnderstands) {
+    const auto manifest = nlohmann::json::parse(std::ifstream(MYRIAD_LAYERS "/VkLayer_myriad_profiler.json"));
+    const Settings defaults;
+    for (const auto& setting : manifest["layer"]["features"]["settings"]) {
+        std::vector<std::string> values;
+        for (const auto& flag : setting.value("flags", nlohmann::json::array())) values.push_back(flag["key"]);
+        if (setting["default"].is_string() && setting["default"] != "") values.push_back(setting["default"]);
+        for (const std::string& value : values) {
+            const std::string key = setting["key"], more = value == "label" ? "\nmyriad_profiler.frame_label = x" : "";
+            EXPECT_TRUE(read_settings("myriad_profiler." + key + " = " + value + more, "", [](const char*) { return nullptr; }).problems.empty())
+                << key << " = " << value;
+            const auto variable = [&](const char* name) -> const char* {
+                return name == setting["env"] ? value.c_str() : std::string("MYRIAD_PROFILER_FRAME_LABEL") == name && !more.empty() ? "x" : nullptr;
+            };
+            const LoadedSettings wrong = read_settings("", "", [&](const char* name) { return name == setting["env"] ? "\1" : nullptr; });
+            EXPECT_TRUE(read_settings("", "", variable).problems.empty()) << setting["env"];
+            EXPECT_TRUE(!wrong.problems.empty() || wrong.settings.output != defaults.output) << setting["env"] << " is not read";
+        }
+    }
+    for (const auto& preset : manifest["layer"]["features"]["presets"])
+        for (const auto& setting : preset["settings"])
+            EXPECT_TRUE(read_settings("myriad_profiler." + std::string(setting["key"]) + " = " + std::string(setting["value"]), "",
+                                      [](const char*) { return nullptr; }).problems.empty()) << setting;
 }
 
 TEST(ProfilerLayer, AProgramThatDestroysNothingLeavesWhatItKnewToBeOver) {
