@@ -13,6 +13,7 @@ struct Device::Callbacks {
     PFN_vkSetDebugUtilsObjectNameEXT set_name = nullptr;
     PFN_vkCmdBeginDebugUtilsLabelEXT begin_label = nullptr;
     PFN_vkCmdEndDebugUtilsLabelEXT end_label = nullptr;
+    PFN_vkGetCalibratedTimestampsEXT clocks = nullptr;
 };
 
 namespace {
@@ -38,6 +39,28 @@ bool has_instance_extension(const char* name, const char* layer = nullptr) {
     std::vector<VkExtensionProperties> all(count);
     vkEnumerateInstanceExtensionProperties(layer, &count, all.data());
     return std::any_of(all.begin(), all.end(), [&](auto& e) { return !std::strcmp(e.extensionName, name); });
+}
+
+bool has_device_extension(VkPhysicalDevice physical, const char* name) {
+    uint32_t count = 0;
+    vkEnumerateDeviceExtensionProperties(physical, nullptr, &count, nullptr);
+    std::vector<VkExtensionProperties> all(count);
+    vkEnumerateDeviceExtensionProperties(physical, nullptr, &count, all.data());
+    return std::any_of(all.begin(), all.end(), [&](auto& e) { return !std::strcmp(e.extensionName, name); });
+}
+
+// The host's clock is CLOCK_MONOTONIC, which is std::chrono's steady one here.
+bool has_common_clock(VkInstance instance, VkPhysicalDevice physical) {
+    if (!has_device_extension(physical, VK_EXT_CALIBRATED_TIMESTAMPS_EXTENSION_NAME)) return false;
+    const auto ask = reinterpret_cast<PFN_vkGetPhysicalDeviceCalibrateableTimeDomainsEXT>(
+        vkGetInstanceProcAddr(instance, "vkGetPhysicalDeviceCalibrateableTimeDomainsEXT"));
+    if (!ask) return false;
+    uint32_t count = 0;
+    ask(physical, &count, nullptr);
+    std::vector<VkTimeDomainEXT> domains(count);
+    ask(physical, &count, domains.data());
+    const auto has = [&](VkTimeDomainEXT domain) { return std::count(domains.begin(), domains.end(), domain) > 0; };
+    return has(VK_TIME_DOMAIN_DEVICE_EXT) && has(VK_TIME_DOMAIN_CLOCK_MONOTONIC_EXT);
 }
 
 VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
@@ -128,7 +151,7 @@ struct Query {
     }
 };
 
-DeviceInfo describe(VkPhysicalDevice physical, const Query& q) {
+DeviceInfo describe(VkInstance instance, VkPhysicalDevice physical, const Query& q) {
     const auto& p = q.properties.properties;
     DeviceInfo info;
     info.name = p.deviceName;
@@ -153,6 +176,9 @@ DeviceInfo describe(VkPhysicalDevice physical, const Query& q) {
     const auto& l = p.limits;
     if (l.timestampComputeAndGraphics) info.used.push_back("timestamps");
     else info.degraded.push_back("no timestamps: passes report host time only");
+    info.common_clock = l.timestampComputeAndGraphics && has_common_clock(instance, physical);
+    if (info.common_clock) info.used.push_back("VK_EXT_calibrated_timestamps");
+    else info.degraded.push_back("no VK_EXT_calibrated_timestamps: in time lines, where device times lie beside host times is a guess");
     if (has_instance_extension(VK_EXT_DEBUG_UTILS_EXTENSION_NAME)) info.used.push_back("VK_EXT_debug_utils");
     else info.degraded.push_back("no VK_EXT_debug_utils: objects and regions are not named in tools");
 
@@ -224,7 +250,7 @@ std::vector<DeviceInfo> Device::enumerate() {
     VkInstance instance = create_instance(false, false);
     if (!instance) return {};
     std::vector<DeviceInfo> all;
-    for (VkPhysicalDevice physical : physical_devices(instance)) all.push_back(describe(physical, Query(physical)));
+    for (VkPhysicalDevice physical : physical_devices(instance)) all.push_back(describe(instance, physical, Query(physical)));
     vkDestroyInstance(instance, nullptr);
     return all;
 }
@@ -241,7 +267,7 @@ Device::Device(const DeviceOptions& options) : callbacks_(std::make_unique<Callb
 
     const auto physicals = physical_devices(instance_);
     std::vector<DeviceInfo> infos;
-    for (VkPhysicalDevice physical : physicals) infos.push_back(describe(physical, Query(physical)));
+    for (VkPhysicalDevice physical : physicals) infos.push_back(describe(instance_, physical, Query(physical)));
     try {
         if (infos.empty()) throw DeviceError(no_device);
         const size_t chosen = pick(infos, options.select);
@@ -294,8 +320,12 @@ Device::Device(const DeviceOptions& options) : callbacks_(std::make_unique<Callb
     info.pNext = &f12;
     info.queueCreateInfoCount = 1;
     info.pQueueCreateInfos = &queue;
+    const char* clock = VK_EXT_CALIBRATED_TIMESTAMPS_EXTENSION_NAME;
+    if (info_.common_clock) info.enabledExtensionCount = 1, info.ppEnabledExtensionNames = &clock;
     check(vkCreateDevice(physical_, &info, nullptr, &device_), "creating the device");
     vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
+    if (info_.common_clock)
+        callbacks_->clocks = reinterpret_cast<PFN_vkGetCalibratedTimestampsEXT>(vkGetDeviceProcAddr(device_, "vkGetCalibratedTimestampsEXT"));
     set_name(VK_OBJECT_TYPE_QUEUE, reinterpret_cast<uint64_t>(queue_), "compute queue");
 }
 
@@ -319,6 +349,16 @@ Device::~Device() {
         destroy(instance_, messenger_, nullptr);
     }
     if (instance_) vkDestroyInstance(instance_, nullptr);
+}
+
+std::optional<Device::Moment> Device::now() const {
+    if (!callbacks_->clocks) return std::nullopt;
+    VkCalibratedTimestampInfoEXT infos[2] = {{VK_STRUCTURE_TYPE_CALIBRATED_TIMESTAMP_INFO_EXT}, {VK_STRUCTURE_TYPE_CALIBRATED_TIMESTAMP_INFO_EXT}};
+    infos[0].timeDomain = VK_TIME_DOMAIN_DEVICE_EXT;
+    infos[1].timeDomain = VK_TIME_DOMAIN_CLOCK_MONOTONIC_EXT;
+    uint64_t values[2], deviation;
+    check(callbacks_->clocks(device_, 2, infos, values, &deviation), "reading the clocks");
+    return Moment{values[0], std::chrono::steady_clock::time_point(std::chrono::nanoseconds(values[1]))};
 }
 
 void Device::reserve(const std::string& kind, const std::string& name, uint64_t bytes) {

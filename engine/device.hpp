@@ -1,10 +1,12 @@
 // One Vulkan 1.3 device with one compute queue: picked by capability, every limit queried, nothing assumed.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <future>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +25,7 @@ struct DeviceInfo {
     std::vector<std::string> missing;      // required features that are absent: the device cannot be used
     std::vector<std::string> degraded;     // optional features that are absent, and what happens instead
     std::map<std::string, uint64_t> limits;
+    bool common_clock = false;             // device and host times can be told on one
     bool usable() const { return missing.empty(); }
 };
 
@@ -74,6 +77,13 @@ public:
     double timestamp_period_ns() const { return timestamp_period_ns_; }  // 0: the queue has no timestamps
     // The most loop iterations one invocation may make in all its loops: Mesa before 23 ends loops silently after 65,535.
     uint32_t loop_limit() const { return loop_limit_; }
+
+    // The device's clock beside the host's, by VK_EXT_calibrated_timestamps: one moment on both. None where the device has not got it.
+    struct Moment {
+        uint64_t ticks = 0;
+        std::chrono::steady_clock::time_point host;
+    };
+    std::optional<Moment> now() const;
 
     // Memory accounting, called by Buffer. `reserve` throws OutOfMemory naming the buffer, the limit and the cure.
     void reserve(const std::string& kind, const std::string& name, uint64_t bytes);

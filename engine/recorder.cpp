@@ -6,6 +6,9 @@ namespace myriad::engine {
 
 namespace {
 
+// What a recorder's commands run in: kernels, fills and copies.
+constexpr VkPipelineStageFlags2 work_stages = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
+
 CommandSet new_command_set(const Device& device, uint32_t queries) {
     CommandSet set;
     VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
@@ -73,11 +76,10 @@ void Recorder::synchronise() {
         });
     });
     if (hazard) {
-        const VkPipelineStageFlags2 stages = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
         VkMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
-        barrier.srcStageMask = stages | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT;
+        barrier.srcStageMask = work_stages | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT;
         barrier.srcAccessMask = VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT;
-        barrier.dstStageMask = stages | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT;
+        barrier.dstStageMask = work_stages | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT;
         barrier.dstAccessMask = VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_TRANSFER_READ_BIT |
                                 VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT;
         VkDependencyInfo dependency{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
@@ -141,7 +143,7 @@ Recorder::Scope::Scope(Recorder& recorder, std::string name) : recorder_(recorde
     const bool queried = recorder.set_.queries && recorder.next_query_ + 2 <= max_queries;
     recorder.scopes_.push_back({index_, recorder.next_query_, queried});
     if (queried) {
-        vkCmdWriteTimestamp2(recorder.set_.commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, recorder.set_.queries, recorder.next_query_);
+        vkCmdWriteTimestamp2(recorder.set_.commands, VK_PIPELINE_STAGE_2_BOTTOM_OF_PIPE_BIT, recorder.set_.queries, recorder.next_query_);
         recorder.next_query_ += 2;
     }
 }
@@ -151,7 +153,7 @@ Recorder::Scope::~Scope() {
     time.cpu_ms = recorder_.now_ms() - time.cpu_begin_ms;
     for (const OpenScope& open : recorder_.scopes_)
         if (open.time == index_ && open.queried)
-            vkCmdWriteTimestamp2(recorder_.set_.commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, recorder_.set_.queries, open.first_query + 1);
+            vkCmdWriteTimestamp2(recorder_.set_.commands, VK_PIPELINE_STAGE_2_BOTTOM_OF_PIPE_BIT, recorder_.set_.queries, open.first_query + 1);
     recorder_.device_.end_label(recorder_.set_.commands);
 }
 
@@ -177,8 +179,8 @@ double Recorder::warm_up() {
 void Recorder::submit_and_wait() {
     // What the device wrote becomes visible to the host, through mapped buffers.
     VkMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
-    barrier.srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-    barrier.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
+    barrier.srcStageMask = work_stages;
+    barrier.srcAccessMask = VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT;
     barrier.dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT;
     barrier.dstAccessMask = VK_ACCESS_2_HOST_READ_BIT;
     VkDependencyInfo dependency{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
@@ -201,11 +203,16 @@ void Recorder::submit_and_wait() {
         check(vkGetQueryPoolResults(device_.handle(), set_.queries, 0, next_query_, ticks.size() * sizeof(uint64_t), ticks.data(),
                                     sizeof(uint64_t), VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
               "reading timestamps");
-        if (!gpu_epoch_) gpu_epoch_ = ticks[0];
         const double ms = device_.timestamp_period_ns() * 1e-6;
+        if (const auto moment = device_.now()) {  // read anew each time: clocks drift
+            const std::chrono::duration<double, std::milli> since = moment->host - epoch_;
+            gpu_epoch_ = moment->ticks - uint64_t(int64_t(since.count() / ms));
+        } else if (!gpu_epoch_) {
+            gpu_epoch_ = ticks[0];
+        }
         for (const OpenScope& scope : scopes_) {
             if (!scope.queried) continue;
-            times_[scope.time].gpu_begin_ms = double(ticks[scope.first_query] - gpu_epoch_) * ms;
+            times_[scope.time].gpu_begin_ms = double(int64_t(ticks[scope.first_query] - gpu_epoch_)) * ms;
             times_[scope.time].gpu_ms = double(ticks[scope.first_query + 1] - ticks[scope.first_query]) * ms;
         }
     }

@@ -19,7 +19,8 @@
 
 namespace myriad::engine {
 
-// One timed region. Times are milliseconds; begins are relative to the recorder's creation, on each side's own clock.
+// One timed region. Times are milliseconds; begins are relative to the recorder's creation. Where the device shares no clock with the host
+// (DeviceInfo::common_clock), gpu_begin_ms is relative to the first region's begin on the device.
 struct PassTime {
     std::string name;
     double gpu_ms = 0, cpu_ms = 0;          // gpu_ms is 0 where the queue has no timestamps; cpu_ms is the recording

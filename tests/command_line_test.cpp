@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 #include <thread>
 
 #include <nlohmann/json.hpp>
@@ -320,6 +321,29 @@ TEST_F(command_line, render_writes_what_was_asked_for) {
     for (const char* name : {"node_views", "cut", "list_capacity", "list_peak", "vpls"}) EXPECT_GT(stats["frames"][0]["counters"][name], 0);
     EXPECT_GT(stats["frames"][0]["counters"]["peak_bytes"].size(), 3u);
     EXPECT_GT(nlohmann::json::parse(bytes_of(folder / "t.json"))["traceEvents"].size(), 10u);
+}
+
+// One clock for both: what the device did for a frame lies after its recording and within the frame's time on the host.
+TEST_F(command_line, a_time_line_joins_host_and_device) {
+    succeed(tiny + Arguments{"-o", exr, "--trace", folder / "t.json", "--repeat", "2"});
+    const auto trace = nlohmann::json::parse(bytes_of(folder / "t.json"));
+    std::vector<std::pair<double, double>> frames, recorded, ran;  // from and to
+    std::set<std::string> counters;
+    for (const auto& event : trace["traceEvents"]) {
+        if (event["ph"] == "C") counters.insert(event["name"]);
+        if (event["ph"] != "X") continue;
+        const double from = event["ts"], to = from + double(event["dur"]);
+        if (event["tid"] == 1 && std::string(event["name"]).starts_with("frame ")) frames.emplace_back(from, to);
+        if (event["name"] == "gather") (event["tid"] == 3 ? ran : recorded).emplace_back(from, to);
+    }
+    ASSERT_EQ(frames.size(), 2u);
+    ASSERT_EQ(recorded.size(), 2u);
+    ASSERT_EQ(ran.size(), 2u);
+    for (size_t i = 0; i < 2; ++i) {
+        EXPECT_GE(ran[i].first, recorded[i].second);
+        EXPECT_LE(ran[i].second, frames[i].second);
+    }
+    for (const char* name : {"list_peak", "vpls", "peak_bytes: atlas"}) EXPECT_TRUE(counters.contains(name)) << name;
 }
 
 TEST_F(command_line, layers_add_up_to_the_beauty) {

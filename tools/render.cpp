@@ -63,7 +63,11 @@ void write_reports(const RenderOptions& options, RunRecord& run) {
     } else if (!options.stats.empty()) {
         write_text(options.stats, stats_json(run)), run.files.push_back(options.stats);
     }
-    if (!options.trace.empty()) write_text(options.trace, trace_json(run)), run.files.push_back(options.trace);
+    if (options.trace.empty()) return;
+    write_text(options.trace, trace_json(run)), run.files.push_back(options.trace);
+    if (!run.device.common_clock)
+        say("warning", "\"" + run.device.name + "\" shares no clock with the host (VK_EXT_calibrated_timestamps): in " + options.trace +
+                           ", device times stand where no pass begins before it was recorded");
 }
 
 // Renders one shot after the other.

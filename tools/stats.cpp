@@ -36,41 +36,6 @@ ordered_json scene_json(const RunRecord& run) {
     return scene;
 }
 
-ordered_json counters_json(const FrameRun& frame) {
-    ordered_json counters = ordered_json::object();
-    if (frame.counters.vpls) counters["vpls"] = *frame.counters.vpls;
-    if (frame.counters.point_lights) counters["point_lights"] = *frame.counters.point_lights;
-    if (frame.counters.prepared) counters["light_paths_prepared"] = *frame.counters.prepared;
-    if (frame.counters.tree_growth) counters["tree_growth"] = *frame.counters.tree_growth;
-    if (frame.counters.tree_overlap) counters["tree_overlap"] = *frame.counters.tree_overlap;
-    if (frame.counters.tree_rebuilds) counters["tree_rebuilds"] = *frame.counters.tree_rebuilds;
-    if (const auto& maps = frame.counters.maps) {
-        if (maps->list_capacity) {
-            if (!maps->pairs) counters["node_views"] = maps->node_views, counters["cut"] = maps->cut;
-            if (maps->invalid) counters["cut_invalid"] = maps->invalid;
-            if (maps->maps_drawn) counters["maps_drawn"] = *maps->maps_drawn;
-            counters["cut_groups"] = maps->groups;
-            counters["list_capacity"] = maps->list_capacity;
-            counters["list_peak"] = maps->list_peak;
-        }
-        if (maps->pairs) {
-            counters["pairs"] = maps->pairs, counters["pairs_culled"] = maps->pairs_culled, counters["pairs_edge_on"] = maps->pairs_edge_on, counters["pairs_rendered"] = maps->pairs_rendered;
-            counters["views_per_rendered_pair"] = maps->pairs_rendered ? double(maps->views_of_rendered) / double(maps->pairs_rendered) : 0.0;
-            counters["shared_maps"] = maps->shared_maps;
-            for (const auto& step : maps->pair_steps)
-                counters["pairs_by_step"].push_back({{"tested", step.tested}, {"culled", step.culled}, {"edge_on", step.edge_on}, {"rendered", step.rendered}});
-        }
-        if (maps->triangle_views) counters["triangle_views"] = maps->triangle_views;
-        counters["batches"] = maps->batches;
-        counters["redone"] = maps->redone;
-    }
-    if (const auto& points = frame.counters.points)
-        counters["points"] = {{"node_views", points->node_views}, {"cut", points->cut}, {"cut_groups", points->groups}, {"drawn", points->drawn},
-                              {"list_capacity", points->list_capacity}, {"list_peak", points->list_peak}, {"redone", points->redone}};
-    counters["peak_bytes"] = frame.peak_bytes;
-    return counters;
-}
-
 std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
 std::string format(const char* pattern, ...) {
     char text[512];
@@ -108,6 +73,41 @@ std::string counters_text(const FrameRun& frame) {
 }
 
 }  // namespace
+
+ordered_json counters_json(const FrameRun& frame) {
+    ordered_json counters = ordered_json::object();
+    if (frame.counters.vpls) counters["vpls"] = *frame.counters.vpls;
+    if (frame.counters.point_lights) counters["point_lights"] = *frame.counters.point_lights;
+    if (frame.counters.prepared) counters["light_paths_prepared"] = *frame.counters.prepared;
+    if (frame.counters.tree_growth) counters["tree_growth"] = *frame.counters.tree_growth;
+    if (frame.counters.tree_overlap) counters["tree_overlap"] = *frame.counters.tree_overlap;
+    if (frame.counters.tree_rebuilds) counters["tree_rebuilds"] = *frame.counters.tree_rebuilds;
+    if (const auto& maps = frame.counters.maps) {
+        if (maps->list_capacity) {
+            if (!maps->pairs) counters["node_views"] = maps->node_views, counters["cut"] = maps->cut;
+            if (maps->invalid) counters["cut_invalid"] = maps->invalid;
+            if (maps->maps_drawn) counters["maps_drawn"] = *maps->maps_drawn;
+            counters["cut_groups"] = maps->groups;
+            counters["list_capacity"] = maps->list_capacity;
+            counters["list_peak"] = maps->list_peak;
+        }
+        if (maps->pairs) {
+            counters["pairs"] = maps->pairs, counters["pairs_culled"] = maps->pairs_culled, counters["pairs_edge_on"] = maps->pairs_edge_on, counters["pairs_rendered"] = maps->pairs_rendered;
+            counters["views_per_rendered_pair"] = maps->pairs_rendered ? double(maps->views_of_rendered) / double(maps->pairs_rendered) : 0.0;
+            counters["shared_maps"] = maps->shared_maps;
+            for (const auto& step : maps->pair_steps)
+                counters["pairs_by_step"].push_back({{"tested", step.tested}, {"culled", step.culled}, {"edge_on", step.edge_on}, {"rendered", step.rendered}});
+        }
+        if (maps->triangle_views) counters["triangle_views"] = maps->triangle_views;
+        counters["batches"] = maps->batches;
+        counters["redone"] = maps->redone;
+    }
+    if (const auto& points = frame.counters.points)
+        counters["points"] = {{"node_views", points->node_views}, {"cut", points->cut}, {"cut_groups", points->groups}, {"drawn", points->drawn},
+                              {"list_capacity", points->list_capacity}, {"list_peak", points->list_peak}, {"redone", points->redone}};
+    counters["peak_bytes"] = frame.peak_bytes;
+    return counters;
+}
 
 double shortest(float value) { return std::strtod(show_number(value).c_str(), nullptr); }
 

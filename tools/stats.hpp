@@ -83,6 +83,7 @@ double median(std::vector<double> values);  // of an even number: the mean of th
 nlohmann::ordered_json settings_json(const passes::FrameSettings& settings, float vpl_bound, bool other_lights = false);
 double shortest(float value);                // as people write it: 0.1, not 0.10000000149
 
+nlohmann::ordered_json counters_json(const FrameRun& frame);  // those that count something in this run
 std::string stats_json(const RunRecord& run);
 std::string stats_table(const RunRecord& run);
 

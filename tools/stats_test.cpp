@@ -126,6 +126,10 @@ TEST(trace, events_have_the_shape_of_the_format) {
             if (event["name"] == "thread_name") tracks[event["tid"]] = event["args"]["name"];
             continue;
         }
+        if (event["ph"] == "C") {
+            EXPECT_TRUE(event["args"]["value"].is_number());
+            continue;
+        }
         ASSERT_EQ(event["ph"], "X");
         EXPECT_GE(event["ts"].get<double>(), 0);
         EXPECT_GT(event["dur"].get<double>(), 0);
@@ -144,12 +148,30 @@ TEST(trace, nothing_starts_on_the_gpu_before_it_was_recorded) {
         for (const engine::PassTime& p : frame.passes) EXPECT_GE(p.gpu_begin_ms + offset, p.cpu_begin_ms + p.cpu_ms);
 }
 
+TEST(trace, a_device_on_the_hosts_clock_stays_where_it_is) {
+    RunRecord run = made_up();
+    run.device.common_clock = true;
+    EXPECT_EQ(gpu_offset_ms(run), 0);
+}
+
+TEST(trace, counters_are_list_sizes_and_bytes_a_value_a_frame) {
+    const RunRecord run = made_up();
+    const json trace = json::parse(trace_json(run));
+    std::map<std::string, std::vector<json>> counters;
+    for (const json& event : trace["traceEvents"])
+        if (event["ph"] == "C") counters[event["name"]].push_back(event);
+    ASSERT_EQ(counters["list_peak"].size(), run.frames.size());
+    ASSERT_EQ(counters["peak_bytes: atlas"].size(), run.frames.size());
+    EXPECT_EQ(counters["peak_bytes: atlas"][0]["args"]["value"], 1 << 20);
+    EXPECT_DOUBLE_EQ(counters["list_peak"][0]["ts"], (run.frames[0].host.begin_ms + run.frames[0].host.ms) * 1e3);
+}
+
 TEST(trace, devices_without_timestamps_have_no_gpu_events) {
     RunRecord run = made_up();
     for (FrameRun& frame : run.frames)
         for (engine::PassTime& p : frame.passes) p.gpu_ms = p.gpu_begin_ms = 0;
     const json trace = json::parse(trace_json(run));  // a loop over a member of a temporary would outlive it
-    for (const json& event : trace["traceEvents"]) EXPECT_TRUE(event["ph"] == "M" || event["tid"] != 3);
+    for (const json& event : trace["traceEvents"]) EXPECT_TRUE(event["ph"] != "X" || event["tid"] != 3);
 }
 
 TEST(finite, counts_broken_pixels_and_names_the_first) {

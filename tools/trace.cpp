@@ -22,9 +22,19 @@ ordered_json event(int track, const std::string& name, double begin_ms, double m
     return {{"ph", "X"}, {"pid", process}, {"tid", track}, {"name", name}, {"ts", microseconds(begin_ms)}, {"dur", microseconds(ms)}};
 }
 
+// Every number of a frame's counters, under the names that stats.json has for them; those of parts behind the part's name.
+void add_counters(ordered_json& events, const ordered_json& counters, const std::string& prefix, double at_ms) {
+    for (const auto& [name, value] : counters.items()) {
+        if (value.is_object()) add_counters(events, value, prefix + name + ": ", at_ms);
+        if (value.is_number())
+            events.push_back({{"ph", "C"}, {"pid", process}, {"tid", 0}, {"name", prefix + name}, {"ts", at_ms * 1e3}, {"args", {{"value", value}}}});
+    }
+}
+
 }  // namespace
 
 double gpu_offset_ms(const RunRecord& run) {
+    if (run.device.common_clock) return 0;
     double offset = -std::numeric_limits<double>::infinity();
     for (const FrameRun& frame : run.frames)
         for (const engine::PassTime& pass : frame.passes)
@@ -39,6 +49,7 @@ std::string trace_json(const RunRecord& run) {
     const double gpu_ms = run.recorder_ms + gpu_offset_ms(run);
     for (const FrameRun& frame : run.frames) {
         events.push_back(event(cpu_track, frame.host.name, frame.host.begin_ms, frame.host.ms));
+        add_counters(events, counters_json(frame), "", frame.host.begin_ms + frame.host.ms);
         for (const engine::PassTime& pass : frame.passes) {
             events.push_back(event(recording_track, pass.name, run.recorder_ms + pass.cpu_begin_ms, pass.cpu_ms));
             if (pass.gpu_ms > 0) events.push_back(event(gpu_track, pass.name, gpu_ms + pass.gpu_begin_ms, pass.gpu_ms));

@@ -275,6 +275,34 @@ void render_passes(Device& device) {
     device.submit_and_wait(commands);
 }
 
+// Allowed nowhere: two writes that nothing orders, a barrier for all there is, and a fence that outlives its device.
+void wrong(Device& device) {
+    VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
+    info.size = 1 << 20, info.usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+    VkBuffer buffer;
+    CHECK(vkCreateBuffer(device.handle, &info, nullptr, &buffer));
+    VkMemoryRequirements needs;
+    vkGetBufferMemoryRequirements(device.handle, buffer, &needs);
+    VkMemoryAllocateInfo allocate{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, nullptr, needs.size, uint32_t(__builtin_ctz(needs.memoryTypeBits))};
+    VkDeviceMemory memory;
+    CHECK(vkAllocateMemory(device.handle, &allocate, nullptr, &memory));
+    CHECK(vkBindBufferMemory(device.handle, buffer, memory, 0));
+
+    const VkCommandBuffer commands = device.commands(device.pool());
+    device.begin(commands);
+    vkCmdFillBuffer(commands, buffer, 0, VK_WHOLE_SIZE, 1);
+    vkCmdFillBuffer(commands, buffer, 0, VK_WHOLE_SIZE, 2);
+    VkMemoryBarrier barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, VK_ACCESS_MEMORY_WRITE_BIT, VK_ACCESS_MEMORY_READ_BIT};
+    vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 1, &barrier, 0, nullptr, 0, nullptr);
+    CHECK(vkEndCommandBuffer(commands));
+    device.submit_and_wait(commands);
+    vkDestroyBuffer(device.handle, buffer, nullptr);
+    vkFreeMemory(device.handle, memory, nullptr);
+    const VkFenceCreateInfo left{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
+    VkFence fence;
+    CHECK(vkCreateFence(device.handle, &left, nullptr, &fence));
+}
+
 }  // namespace
 
 int main(int, char** argv) {
@@ -290,6 +318,7 @@ int main(int, char** argv) {
     else if (mode == "secondary-twice") secondary(device, 2);
     else if (mode == "threads") two_threads(device);
     else if (mode == "render-passes") render_passes(device);
+    else if (mode == "wrong") wrong(device);
     else if (mode == "devices") {
         Device second(instance);
         repeat(device, "one", 1, 1, 0, true), repeat(second, "other", 1, 1, 0, true);

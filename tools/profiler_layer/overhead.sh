@@ -11,15 +11,17 @@ build=${BUILD:-$root/build}
 rounds=${1:-5}
 [[ $# -eq 0 ]] || shift
 [[ $# -gt 0 ]] || set -- builtin:atrium --size 640x360
-# The first image of each run is left out: it is there to warm up.
+# The first image of each run is left out: it is there to warm up. Each round begins with another mode.
+modes=(none frame pass dispatch)
 round() {
-  local number=$1 mode
+  local number=$1 mode turn
   shift
-  for mode in none frame pass dispatch; do
+  for turn in 0 1 2 3; do
+    mode=${modes[(number + turn) % 4]}
     env VK_LAYER_PATH="$build/layers" VK_INSTANCE_LAYERS="$([[ $mode == none ]] || echo VK_LAYER_MYRIAD_profiler)" \
       MYRIAD_PROFILER_GRANULARITY="${mode/none/frame}" MYRIAD_PROFILER_OUTPUT_FILE="$folder/trace.json" XDG_DATA_HOME="$folder" \
-      "$build/bin/myriad" render "$@" --repeat 3 --quiet -o "$folder/image.exr" --stats "$folder/$mode.$number.stats"
-    jq '[.frames[1:][].ms] | sort | (.[0] + .[-1]) / 2' "$folder/$mode.$number.stats" > "$folder/$mode.$number"
+      "$build/bin/myriad" render "$@" --repeat 4 --quiet -o "$folder/image.exr" --stats "$folder/$mode.$number.stats"
+    jq '[.frames[1:][].ms] | sort | .[1]' "$folder/$mode.$number.stats" > "$folder/$mode.$number"
   done
 }
 if [[ ${1:-} == --round ]]; then
@@ -34,7 +36,7 @@ for ((i = 1; i <= rounds; ++i)); do
 done
 
 printf '%-10s %10s %10s %10s   %s\n' granularity 'median ms' least most 'ratio (least to most)'
-for mode in none frame pass dispatch; do
+for mode in "${modes[@]}"; do
   for ((i = 1; i <= rounds; ++i)); do
     jq -n --slurpfile with "$folder/$mode.$i" --slurpfile without "$folder/none.$i" '[$with[0], $with[0] / $without[0]]'
   done | jq -rs --arg mode "$mode" 'def median: sort | if length % 2 == 1 then .[length / 2 | floor] else (.[length / 2] + .[length / 2 - 1]) / 2 end;
