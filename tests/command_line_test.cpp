@@ -23,7 +23,7 @@ TEST_F(command_line, help_names_every_option) {
         {"render", {"SCENE",     "--output",   "--png",  "--size",    "--camera",  "--seed",    "--primary", "--primary-pixels", "--visibility", "--append",
                     "--vpls",    "--bounces",  "--map-size",          "--epsilon", "--samples", "--gather", "--gather-distance",     "--filter",
                     "--vpl-bound", "--bias",   "--exposure",          "--memory-limit",         "--stats",      "--trace",
-                    "--aov",     "--cache",  "--instances",         "--sky",     "--device",   "--repeat", "--float", "--animation", "--time", "--frames", "--fps", "--loop", "--camera-path", "--rebuild", "--env", "--env-lights", "--env-rotation", "--env-strength", "--quiet",   "1:1",       "builtin:cornell", "W/sr"}},
+                    "--aov",     "--cache",  "--instances",         "--sky",     "--device",   "--repeat", "--capture-frame", "--float", "--animation", "--time", "--frames", "--fps", "--loop", "--camera-path", "--rebuild", "--env", "--env-lights", "--env-rotation", "--env-strength", "--quiet",   "1:1",       "builtin:cornell", "W/sr"}},
         {"compare", {"REF", "TEST", "--json", "--fail-above", "--fail-below", "--layer", "--diff", "--diff-metric", "--ppd", "--tolerance", "--golden", "--heat-maps",
                      "--all-heat-maps", "--junit", "--bless"}},
         {"bench", {"--json"}},
@@ -321,6 +321,18 @@ TEST_F(command_line, render_writes_what_was_asked_for) {
     for (const char* name : {"node_views", "cut", "list_capacity", "list_peak", "vpls"}) EXPECT_GT(stats["frames"][0]["counters"][name], 0);
     EXPECT_GT(stats["frames"][0]["counters"]["peak_bytes"].size(), 3u);
     EXPECT_GT(nlohmann::json::parse(bytes_of(folder / "t.json"))["traceEvents"].size(), 10u);
+}
+
+TEST_F(command_line, one_frame_is_captured_where_renderdoc_is_attached) {
+    const TempFolder logs;
+    const Environment attached = {{"LD_PRELOAD", FALSE_RENDERDOC}, {"FALSE_RENDERDOC_LOG", logs / "log"}};
+    const auto capture = [&](const char* number) { return tiny + Arguments{"-o", exr, "--repeat", "3", "--capture-frame", number}; };
+    refuse(2, capture("1"), "RenderDoc, which is not attached; start the program with renderdoccmd capture");
+    refuse(2, capture("3"), "the last is 2", attached);
+    refuse(3, capture("2"), "RenderDoc made no capture", attached + Environment{{"FALSE_RENDERDOC_FAILS", "1"}});
+    std::filesystem::remove(logs / "log");
+    succeed(capture("1"), attached);
+    EXPECT_EQ(bytes_of(logs / "log"), "start\nend\n");
 }
 
 // One clock for both: what the device did for a frame lies after its recording and within the frame's time on the host.

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "tools/capture.hpp"
 #include "tools/commands.hpp"
 #include "tools/exposure.hpp"
 #include "tools/exr.hpp"
@@ -118,7 +119,10 @@ private:
         FrameRun result;
         result.host = {"frame " + std::to_string(shot.number.value_or(uint32_t(run_.frames.size()))), run_.now_ms(), 0};
         result.number = shot.number, result.seconds = shot.seconds;
+        std::optional<RenderdocCapture> capture;
+        if (options_.capture_frame == run_.frames.size()) capture.emplace();
         frame_->render(camera);
+        if (capture) capture->end();
         result.host.ms = run_.now_ms() - result.host.begin_ms;
         result.passes = frame_->times();
         result.counters = frame_->counters();

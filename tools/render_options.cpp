@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "scenes/scene.hpp"
+#include "tools/capture.hpp"
 #include "tools/output_file.hpp"
 
 namespace myriad::tools {
@@ -44,6 +45,8 @@ void add_outputs(CLI::App& command, RenderOptions& o) {
     command.add_flag("--float", o.full_floats, "colours of the EXR as 32-bit floats instead of halves (P and Z always are)");
     command.add_option("--stats", o.stats, "write sizes, settings, times and counters as JSON")->type_name("FILE");
     command.add_option("--trace", o.trace, "write a time line of CPU and GPU, to open in ui.perfetto.dev")->type_name("FILE");
+    add_parsed(command, "--capture-frame", "N", "", "where RenderDoc is attached (renderdoccmd capture myriad render …): captures the making of image N, from 0, of --repeat\n"
+               "or --frames", [&o](const std::string& text) { o.capture_frame = parse_number("--capture-frame", text, 0u, ~0u); });
     command.add_flag("-q,--quiet", o.quiet, "no table and no progress");
 }
 
@@ -313,6 +316,12 @@ void check_outputs(const RenderOptions& o) {
     if (!o.environment.file.empty() && (o.frame.visibility == passes::Visibility::brute || o.frame.visibility == passes::Visibility::ism))
         throw InputError("--visibility " + choice_name(visibilities(), o.frame.visibility) +
                          " draws no maps for the lights of an environment; give manylods, rays or none with --env");
+    if (o.capture_frame && !renderdoc_attached())
+        throw InputError("--capture-frame is for RenderDoc, which is not attached; start the program with renderdoccmd capture, or leave the option out");
+    const uint32_t images = o.frames ? o.frames->second - o.frames->first + 1 : o.repeat;
+    if (o.capture_frame && *o.capture_frame >= images)
+        throw InputError("--capture-frame " + std::to_string(*o.capture_frame) + ": images are numbered from 0, and the last is " +
+                         std::to_string(images - 1) + "; give --repeat, or a lower number");
     for (const auto& [option, path] : {std::pair("-o", o.exr), {"--png", o.png}}) check_numbered(option, path, o.frames.has_value());
     if (has_number(o.stats)) check_numbered("--stats", o.stats, o.frames.has_value());
     if (has_number(o.trace)) throw InputError("--trace '" + o.trace + "': a time line is one for all frames; give a plain name");

@@ -27,6 +27,7 @@ struct RenderOptions : SceneOptions {
     scenes::Sharing instances = scenes::Sharing::automatic;
     std::filesystem::path cache = engine::default_cache_folder();  // empty: none
     uint32_t repeat = 1;
+    std::optional<uint32_t> capture_frame;  // which of the images RenderDoc captures, from 0
     std::optional<std::pair<uint32_t, uint32_t>> frames;  // first and last; frame i is i / fps seconds in
     std::optional<double> fps;           // absent: usual_fps
     static constexpr double usual_fps = 24;
