@@ -70,7 +70,7 @@ VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT
     return VK_FALSE;
 }
 
-VkInstance create_instance(bool validation, bool debug_utils) {
+VkInstance create_instance(bool validation, bool debug_utils, const std::vector<std::string>& surfaces = {}) {
     VkApplicationInfo application{VK_STRUCTURE_TYPE_APPLICATION_INFO};
     application.pApplicationName = "myriad";
     application.apiVersion = VK_API_VERSION_1_3;
@@ -87,6 +87,7 @@ VkInstance create_instance(bool validation, bool debug_utils) {
         info.pNext = &features;
     }
     if (debug_utils) extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+    for (const std::string& name : surfaces) extensions.push_back(name.c_str());
     info.enabledLayerCount = uint32_t(layers.size());
     info.ppEnabledLayerNames = layers.data();
     info.enabledExtensionCount = uint32_t(extensions.size());
@@ -241,6 +242,8 @@ void check(VkResult result, const char* what) {
     const std::string code = std::to_string(int(result));
     if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY)
         throw OutOfMemory(std::string(what) + " ran out of memory; lower --memory-limit or --vpls");
+    if (result == VK_ERROR_EXTENSION_NOT_PRESENT)
+        throw DeviceError(std::string(what) + ": its driver shows no pictures in windows; use another device with --device");
     if (result == VK_ERROR_DEVICE_LOST)
         throw DeviceError(std::string(what) + ": the device was lost (a driver fault or a time-out); update the driver or use --device");
     throw DeviceError(std::string(what) + " failed (VkResult " + code + ")");
@@ -262,7 +265,7 @@ Device::Device(const DeviceOptions& options) : callbacks_(std::make_unique<Callb
         std::cerr << "warning: the Khronos validation layer is not installed (package vulkan-validationlayers); running without it\n";
     const bool debug_utils = has_instance_extension(VK_EXT_DEBUG_UTILS_EXTENSION_NAME) ||
                              (validation_active_ && has_instance_extension(VK_EXT_DEBUG_UTILS_EXTENSION_NAME, validation_layer));
-    instance_ = create_instance(validation_active_, debug_utils);
+    instance_ = create_instance(validation_active_, debug_utils, options.surfaces);
     if (!instance_) throw DeviceError(no_device);
 
     const auto physicals = physical_devices(instance_);
@@ -320,8 +323,11 @@ Device::Device(const DeviceOptions& options) : callbacks_(std::make_unique<Callb
     info.pNext = &f12;
     info.queueCreateInfoCount = 1;
     info.pQueueCreateInfos = &queue;
-    const char* clock = VK_EXT_CALIBRATED_TIMESTAMPS_EXTENSION_NAME;
-    if (info_.common_clock) info.enabledExtensionCount = 1, info.ppEnabledExtensionNames = &clock;
+    std::vector<const char*> extensions;
+    if (info_.common_clock) extensions.push_back(VK_EXT_CALIBRATED_TIMESTAMPS_EXTENSION_NAME);
+    if (!options.surfaces.empty()) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+    info.enabledExtensionCount = uint32_t(extensions.size());
+    info.ppEnabledExtensionNames = extensions.data();
     check(vkCreateDevice(physical_, &info, nullptr, &device_), "creating the device");
     vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
     if (info_.common_clock)

@@ -33,6 +33,7 @@ struct DeviceOptions {
     std::string select;              // part of a name, or an index in decimal; empty: the fastest kind that is usable
     bool validation = false;         // Khronos layer with synchronization validation; MYRIAD_VALIDATION=1 does the same
     uint64_t memory_limit = 0;       // bytes for buffers, 0: what the largest device-local heap has
+    std::vector<std::string> surfaces{};  // instance extensions that windows need (Window::extensions()); empty: none, nothing is ever shown
 };
 
 // Bytes by kind of buffer ("lists", "atlas", "scene" …): now, and the most at any one time.
@@ -68,6 +69,8 @@ public:
     static std::vector<DeviceInfo> enumerate();
 
     const DeviceInfo& info() const { return info_; }
+    VkInstance instance() const { return instance_; }
+    VkPhysicalDevice physical() const { return physical_; }
     VkDevice handle() const { return device_; }
     VkQueue queue() const { return queue_; }
     uint32_t queue_family() const { return queue_family_; }

@@ -224,7 +224,14 @@ void Frame::report(const std::string& stage, double done) const {
     if (settings_.progress) settings_.progress(stage, done);
 }
 
-void Frame::render(const scenes::Camera& camera) {
+// For who is waiting: what was recorded is done, and what follows is a submission of its own.
+void Frame::pause(const char* stage) {
+    if (!settings_.progress) return;
+    recorder_.submit_and_wait();
+    report(stage, 0);
+}
+
+void Frame::render(const scenes::Camera& camera) try {
     counters_ = {};
     render_once(camera);
     // Since paths were prepared, lights or surfaces have moved so that more VPLs live than there is room for. Fewer paths, then.
@@ -237,15 +244,20 @@ void Frame::render(const scenes::Camera& camera) {
     moved_ = false;
     times_ = recorder_.take_times();
     report("done", 1);
+} catch (...) {
+    recorder_.take_times();  // of a frame that never was
+    throw;
 }
 
 void Frame::render_once(const scenes::Camera& camera) {
     const float pixel_angle = 2 * std::tan(camera.yfov / 2) / float(settings_.height);
     see(camera);
     if (direct_) {
+        pause("direct light");
         auto scope = recorder_.scope("direct");
         direct_->record(recorder_, gbuffer(), bvh_, lights_);
     }
+    pause("gathering");
     if (vpl_) {
         auto scope = recorder_.scope("vpls");
         vpl_->record(recorder_, geometry_, bvh_, lights_, settings_.bounces, settings_.seed);

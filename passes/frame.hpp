@@ -80,7 +80,8 @@ struct FrameSettings {
     // something has moved.
     float rebuild = std::numeric_limits<float>::infinity();
     engine::Cache* cache = nullptr;  // of what is made of the triangles before the first frame; null: it is made anew
-    // Called now and then with a stage and how much of it is done, 0 to 1.
+    // Called now and then, between submissions, with a stage and how much of it is done, 0 to 1. It may throw: construction or render()
+    // then ends with that, and another render() may follow.
     std::function<void(const std::string& stage, double done)> progress;
 };
 
@@ -173,6 +174,7 @@ private:
                 const char* stage);
     void read_back_words();
     void count_maps();
+    void pause(const char* stage);
     void report(const std::string& stage, double done) const;
 
     engine::Device& device_;

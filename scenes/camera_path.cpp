@@ -64,12 +64,8 @@ Camera CameraPath::at(double seconds) const {
     double v[width];
     sample(way_, false, seconds, v);
     const glm::dvec3 eye(v[0], v[1], v[2]), target(v[3], v[4], v[5]), up(v[6], v[7], v[8]);
-    glm::dmat4 to_world(1);
-    to_world[2] = glm::dvec4(eye - target, 0);
-    to_world[1] = glm::dvec4(up, 0);
-    to_world[3] = glm::dvec4(eye, 1);
     Camera camera{.name = file_, .yfov = float(glm::radians(std::clamp(v[9], 1.0, 170.0)))};
-    if (glm::length(eye - target) <= 1e-9 || !place_camera(camera, to_world))
+    if (!look(camera, eye, target, up))
         throw InputError(file_ + ": at " + std::to_string(seconds) + " s the eye is at the target, or looks along \"up\"; move a key.");
     return camera;
 }

@@ -71,6 +71,14 @@ bool place_camera(Camera& camera, const glm::dmat4& to_world) {
     return true;
 }
 
+bool look(Camera& camera, const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up) {
+    glm::dmat4 to_world(1);
+    to_world[2] = glm::dvec4(eye - target, 0);
+    to_world[1] = glm::dvec4(up, 0);
+    to_world[3] = glm::dvec4(eye, 1);
+    return glm::length(eye - target) > 1e-9 && place_camera(camera, to_world);
+}
+
 bool place_light(Light& light, const glm::dmat4& to_world) {
     const auto along = direction(-glm::dvec3(to_world[2]));
     if (!sane(to_world) || (!along && light.type != Light::Type::point)) return false;

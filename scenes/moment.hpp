@@ -43,6 +43,8 @@ bool sane(const glm::dmat4& to_world);
 // Puts a camera or a light where its node is; false where the transform leaves no such thing, which changes nothing then.
 // A camera has a place and looks along -Z, with its Y axis as far up as that leaves; scale does not concern it, but for one of 0.
 bool place_camera(Camera& camera, const glm::dmat4& to_world);
+// From `eye` to `target`; false where they are one, or `up` is the way from one to the other.
+bool look(Camera& camera, const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up);
 bool place_light(Light& light, const glm::dmat4& to_world);
 
 // Of scene.cameras, by a name or an index in decimal as pick_camera() takes them; empty: the first, or `none` when there is none.

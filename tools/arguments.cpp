@@ -33,6 +33,20 @@ float parse_number(const std::string& option, const std::string& text, float lea
     refuse(option, text, "give a number from " + show_number(least) + " to " + show_number(most));
 }
 
+glm::vec3 parse_point(const std::string& option, const std::string& text) {
+    glm::vec3 point(0);
+    size_t at = 0;
+    for (int c = 0; c < 3; ++c) {
+        const size_t end = c < 2 ? text.find(',', at) : text.size();
+        if (end == std::string::npos || !read(text.substr(at, end - at), point[c]) || !(std::abs(point[c]) <= 1e9f))
+            refuse(option, text, "give X,Y,Z in metres, each from -1e9 to 1e9, such as 0,1.6,5");
+        at = end + 1;
+    }
+    return point;
+}
+
+std::string show_point(const glm::vec3& p) { return show_number(p.x) + "," + show_number(p.y) + "," + show_number(p.z); }
+
 std::pair<uint32_t, uint32_t> parse_size(const std::string& option, const std::string& text) {
     const size_t cross = text.find('x');
     uint32_t width = 0, height = 0;

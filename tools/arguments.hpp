@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include <glm/vec3.hpp>
+
 #include "engine/error.hpp"
 
 namespace myriad::tools {
@@ -15,6 +17,8 @@ namespace myriad::tools {
 // All throw InputError that names the option, the text, and what would do.
 uint64_t parse_whole(const std::string& option, const std::string& text, uint64_t least, uint64_t most);  // decimal
 float parse_number(const std::string& option, const std::string& text, float least, float most);
+glm::vec3 parse_point(const std::string& option, const std::string& text);  // "X,Y,Z", each at most 1e9 from 0
+std::string show_point(const glm::vec3& point);
 // "640x360"; each side from 1 to max_side.
 std::pair<uint32_t, uint32_t> parse_size(const std::string& option, const std::string& text);
 constexpr uint32_t max_side = 16384;

@@ -19,6 +19,7 @@ namespace myriad::tools {
 
 void add_render(CLI::App& app);
 void add_reference(CLI::App& app);
+void add_view(CLI::App& app);
 void add_bench(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_info(CLI::App& app);

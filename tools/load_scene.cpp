@@ -7,11 +7,13 @@
 namespace myriad::tools {
 
 std::string LoadedScene::camera_name() const {
+    if (look) return look->name;
     if (path) return path->at(0).name;
     return camera == scenes::none ? "(all in view)" : scene.cameras[camera].name;
 }
 
 scenes::Camera LoadedScene::camera_at(std::optional<double> seconds, std::span<const scenes::Camera> cameras) const {
+    if (look) return *look;
     if (path) return path->at(*seconds);
     return camera == scenes::none ? scenes::framing_camera(triangles) : cameras[camera];
 }
@@ -19,6 +21,7 @@ scenes::Camera LoadedScene::camera_at(std::optional<double> seconds, std::span<c
 LoadedScene load_scene(const SceneOptions& options, scenes::Sharing sharing, std::span<const double> moments, uint32_t environment_lights, uint32_t seed,
                        Progress& progress) {
     LoadedScene loaded;
+    if (options.eye) loaded.look = looking(options);
     if (!options.camera_path.empty()) loaded.path.emplace(options.camera_path);
     if (loaded.path)
         for (const double seconds : moments) loaded.path->at(seconds);  // refused now, not after an hour

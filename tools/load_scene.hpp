@@ -19,6 +19,7 @@ struct LoadedScene {
     scenes::Triangles triangles;
     uint32_t camera = scenes::none;  // of scene.cameras; none: one that sees all
     std::optional<scenes::CameraPath> path;
+    std::optional<scenes::Camera> look;  // where options say so themselves
 
     std::string camera_name() const;
     // `cameras`: the scene's, at the moment.

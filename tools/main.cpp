@@ -41,6 +41,7 @@ int run(int argc, char** argv) {
     app.set_version_flag("--version", std::string("myriad ") + version + " (" + git_revision + ")");
     app.require_subcommand(0, 1);
     add_render(app);
+    add_view(app);
     add_reference(app);
     add_compare(app);
     add_convert(app);

@@ -7,16 +7,13 @@
 
 #include "tools/capture.hpp"
 #include "tools/commands.hpp"
-#include "tools/exposure.hpp"
-#include "tools/exr.hpp"
 #include "tools/load_scene.hpp"
 #include "tools/message.hpp"
 #include "tools/output_file.hpp"
-#include "tools/png.hpp"
 #include "tools/progress.hpp"
-#include "tools/render_image.hpp"
 #include "tools/render_options.hpp"
 #include "tools/trace.hpp"
+#include "tools/write_images.hpp"
 
 namespace myriad::tools {
 namespace {
@@ -33,24 +30,6 @@ std::vector<Shot> shots(const RenderOptions& options) {
     std::vector<Shot> out;
     for (uint32_t i = options.frames->first; i <= options.frames->second; ++i) out.push_back({i, double(i) / fps});
     return out;
-}
-
-uint32_t environment_lights(const RenderOptions& options) { return options.environment_lights.value_or(scenes::default_environment_lights); }
-
-// The exposure that is found for the first image is that of all: a film must not flicker.
-void write_images(const RenderOptions& options, RunRecord& run, Image& image, passes::Frame& frame, std::optional<uint32_t> number) {
-    if (!options.png.empty()) {
-        if (!run.exposure) run.exposure = options.exposure ? *options.exposure : auto_exposure(*image.rgb());
-        const std::string path = numbered(options.png, number);
-        write_png(path, to_picture(frame.tonemapped(static_cast<float>(*run.exposure)), image.width, image.height));
-        run.files.push_back(path);
-    }
-    if (!options.exr.empty()) {
-        const std::string path = numbered(options.exr, number);
-        image.metadata = image_metadata(run);
-        write_exr(path, image, options.full_floats ? ExrColour::full : ExrColour::half);
-        run.files.push_back(path);
-    }
 }
 
 void write_reports(const RenderOptions& options, RunRecord& run) {
@@ -132,11 +111,7 @@ private:
 
     void write(const Shot& shot) {
         progress_.show("writing", 0);
-        const bool environment = !options_.environment.file.empty();
-        run_.settings = settings_json(settings_, frame_->vpl_bound(), environment || frame_->point_lights());
-        if (environment) run_.settings["env_lights"] = environment_lights(options_);
-        if (shot.number) run_.settings["frame"] = *shot.number;
-        add_scene_settings(run_.settings, options_, loaded_, shot.seconds);
+        run_.settings = image_settings(options_, *frame_, loaded_, shot.number, shot.seconds);
         Image image = read_image(device_, *frame_, options_.layers);
         require_finite(image);
         run_.phase(shot.number ? "frame " + std::to_string(*shot.number) + ": write" : "write", [&] { write_images(options_, run_, image, *frame_, shot.number); });
@@ -167,7 +142,7 @@ void render(const RenderOptions& options) {
     for (const Shot& shot : shots(options))
         if (shot.seconds) moments.push_back(*shot.seconds);
     LoadedScene loaded = run.phase("load", [&] {
-        return load_scene(options, options.instances, moments, environment_lights(options), options.frame.seed, progress);
+        return load_scene(options, options.instances, moments, options.lights_of_environment(), options.frame.seed, progress);
     });
     run.scene = loaded.scene.name;
     run.camera = loaded.camera_name();

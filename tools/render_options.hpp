@@ -32,6 +32,7 @@ struct RenderOptions : SceneOptions {
     std::optional<double> fps;           // absent: usual_fps
     static constexpr double usual_fps = 24;
 
+    uint32_t lights_of_environment() const { return environment_lights.value_or(scenes::default_environment_lights); }
     bool moves() const { return time || frames || !animation.empty(); }  // whether a moment is asked for at all
     bool full_floats = false, quiet = false;
 };
@@ -64,7 +65,10 @@ std::shared_ptr<RenderOptions> add_render_options(CLI::App& command);
 std::string numbered(const std::string& path, std::optional<uint32_t> number);
 bool has_number(const std::string& path);  // whether the name of the file has a %0Nd, N from 1 to 9
 
-// InputError unless there is something to write and all of it can be written, each file under its own name.
+// InputError where they contradict one another, or one of them would change nothing. Nothing is said of outputs.
+void check_choices(const RenderOptions& options);
+
+// check_choices, and InputError unless there is something to write and all of it can be written, each file under its own name.
 void check_outputs(const RenderOptions& options);
 
 }  // namespace myriad::tools

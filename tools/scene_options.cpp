@@ -1,6 +1,8 @@
 #include "tools/scene_options.hpp"
 
-#include "scenes/scene.hpp"
+#include <glm/trigonometric.hpp>
+
+#include "scenes/moment.hpp"
 
 namespace myriad::tools {
 
@@ -17,6 +19,19 @@ void add_scene(CLI::App& command, SceneOptions& o) {
 void add_camera(CLI::App& command, SceneOptions& o) {
     command.add_option("--camera", o.camera, "of the scene; the first unless given, and one that sees all where there is none")
         ->type_name("NAME|INDEX");
+    add_parsed(command, "--eye", "X,Y,Z", "", "where to look from, in place of a camera, with --target; --eye=-1,2,3 where the first is negative",
+               [&o](const std::string& text) { o.eye = parse_point("--eye", text); });
+    add_parsed(command, "--target", "X,Y,Z", "", "what to look at; +y is up", [&o](const std::string& text) { o.target = parse_point("--target", text); });
+    add_parsed(command, "--yfov", "DEGREES", show_number(default_yfov), "vertical angle of view, of --eye", [&o](const std::string& text) {
+        o.yfov = parse_number("--yfov", text, 1, 170);
+    });
+}
+
+scenes::Camera looking(const SceneOptions& o) {
+    scenes::Camera camera{.name = "(from " + show_point(*o.eye) + ")", .yfov = glm::radians(o.yfov.value_or(default_yfov))};
+    if (!scenes::look(camera, glm::dvec3(*o.eye), glm::dvec3(*o.target), {0, 1, 0}))
+        throw InputError("--eye " + show_point(*o.eye) + " --target " + show_point(*o.target) + " look nowhere, or straight up or down; move one of them");
+    return camera;
 }
 
 void add_moment(CLI::App& command, SceneOptions& o) {
@@ -46,6 +61,10 @@ void add_environment(CLI::App& command, SceneOptions& o) {
 }
 
 void check_scene(const SceneOptions& o, bool frames) {
+    if (o.eye.has_value() != o.target.has_value()) throw InputError(std::string(o.eye ? "--eye" : "--target") + " says but half of where to look; give --eye and --target");
+    if (o.eye && !(o.camera.empty() && o.camera_path.empty())) throw InputError("--eye is in place of a camera; leave --camera and --camera-path out with it");
+    if (o.yfov && !o.eye) throw InputError("--yfov is about --eye, and cameras have their own; give --eye and --target with it");
+    if (o.eye) looking(o);
     if (!o.camera_path.empty() && !o.camera.empty()) throw InputError("--camera and --camera-path both say where to look from; give one of them");
     if (!o.camera_path.empty() && !o.time && !frames) throw InputError("--camera-path is a way in time; say which moment with --time, or which with --frames");
     const SceneOptions::Environment& e = o.environment;

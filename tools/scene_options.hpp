@@ -11,6 +11,8 @@ namespace myriad::tools {
 
 struct SceneOptions {
     std::string scene, camera;
+    std::optional<glm::vec3> eye, target;  // in place of the scene's cameras; both or none
+    std::optional<float> yfov;             // degrees, with these
     scenes::SkyChoice sky = scenes::SkyChoice::automatic;
     struct Environment {
         std::string file;                // empty: none
@@ -30,6 +32,8 @@ void add_camera(CLI::App& command, SceneOptions& options);
 void add_moment(CLI::App& command, SceneOptions& options);
 void add_sky(CLI::App& command, SceneOptions& options);
 void add_environment(CLI::App& command, SceneOptions& options);
+constexpr float default_yfov = 45;
+scenes::Camera looking(const SceneOptions& options);  // from eye to target; InputError
 // InputError where they contradict one another. `frames`: moments are named by other options.
 void check_scene(const SceneOptions& options, bool frames = false);
 // A line each of the built-in scenes, for a command's footer.

@@ -39,7 +39,8 @@ void MapCounters::add_steps(const std::vector<compute::PairReport::Step>& steps)
 
 ViewMaps::ViewMaps(engine::Device& device, const MapSettings& settings, uint32_t max_views, uint32_t multiple, const compute::WorldTriangles* world,
                    const IsmScene* ism)
-    : device_(device), settings_(settings), batch_(round_up(std::max(max_views, 1u), multiple)), multiple_(multiple) {
+    : device_(device), settings_(settings), batch_(round_up(std::max(settings.views_at_once ? std::min(max_views, settings.views_at_once) : max_views, 1u), multiple)),
+      multiple_(multiple) {
     assert(!settings.asks || settings.method == MapMethod::megaviews);
     assert(!settings.parallel || settings.method == MapMethod::manylods);
     assert(!settings.octree || settings.method == MapMethod::megaviews);

@@ -34,6 +34,7 @@ struct MapSettings {
     compute::AppendMode append = compute::AppendMode::scan;
     uint32_t map_size = 32;   // texels a side of a half map
     float epsilon = 2;        // texels
+    uint32_t views_at_once = 0;  // the most views a batch, or as many as it must have; 0: as many as fit. The same image
     uint32_t coverage = coverage_exact;  // manylods, megaviews: what nodes smaller than a texel cover (splat_io.h)
     MapMethod method = MapMethod::manylods;
     uint32_t shared_maps = 0; // megaviews: room for maps that views share, to begin with; 0: half as many as views, and 64
