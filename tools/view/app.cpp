@@ -108,7 +108,7 @@ private:
         show_status(state_, area, status, shown_.get());
         const ImVec2 image = image_size(area);
         if (ImGui::GetIO().KeyCtrl && ImGui::IsKeyPressed('C', false) && !ImGui::GetIO().WantTextInput) copy_command(state_, image);
-        show_panel(state_, worker_, shown_.get(), image);
+        show_panel(state_, status, shown_.get(), image);
         show_message(state_, area, status);
         show_help(state_);
         if (status.error != error_) error_ = status.error, log(error_.empty() ? "well again" : "error: " + error_);

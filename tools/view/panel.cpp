@@ -176,7 +176,7 @@ void copy_command(State& state, const ImVec2& image) {
     say(state, "copied: " + line, false);
 }
 
-void show_panel(State& state, const Worker& worker, const Shown* shown, const ImVec2& image) {
+void show_panel(State& state, const Status& status, const Shown* shown, const ImVec2& image) {
     const float width = panel_width(state);
     if (width == 0) return;
     const ImVec2 size = ImGui::GetIO().DisplaySize;
@@ -197,7 +197,7 @@ void show_panel(State& state, const Worker& worker, const Shown* shown, const Im
         for (const std::string& name : group.options)
             if (state.look.offered.contains(name)) widget(state, *find_option(name));
     }
-    if (shown && ImGui::CollapsingHeader("What it took", ImGuiTreeNodeFlags_DefaultOpen)) show_figures(state, *shown, worker.status());
+    if (shown && ImGui::CollapsingHeader("What it took", ImGuiTreeNodeFlags_DefaultOpen)) show_figures(state, *shown, status);
     ImGui::End();
 }
 

@@ -22,7 +22,7 @@ void set_style(float scale) {
     style.ScrollbarSize = 12;
     style.WindowBorderSize = 0;
     ImVec4* colours = style.Colors;
-    colours[ImGuiCol_WindowBg] = {0.085f, 0.095f, 0.11f, 0.97f};
+    colours[ImGuiCol_WindowBg] = {0.085f, 0.095f, 0.11f, 1};
     colours[ImGuiCol_Header] = {0.15f, 0.17f, 0.20f, 1};
     colours[ImGuiCol_HeaderHovered] = {0.20f, 0.24f, 0.29f, 1};
     colours[ImGuiCol_FrameBg] = {0.16f, 0.18f, 0.21f, 1};

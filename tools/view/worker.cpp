@@ -4,7 +4,7 @@
 
 namespace myriad::tools::view {
 
-Worker::Worker(uint32_t divisor, std::function<void()> changed) : changed_(std::move(changed)), pace_(divisor), thread_([this] { run(); }) {}
+Worker::Worker(uint32_t divisor, std::function<void()> changed) : changed_(std::move(changed)), pace_(divisor), divisor_(pace_.divisor()), thread_([this] { run(); }) {}
 
 Worker::~Worker() {
     {
@@ -132,28 +132,28 @@ void Worker::carry_out(Studio& studio, const Wish& wish, std::optional<Order> or
         changed_();
     }
     leave();
-    const double last_ms = studio.last_ms(sized(wish.texts, wish.width, wish.height, 1));
-    const uint32_t divisor = pace_.divisor();
-    const std::vector<Texts> rungs = ladder(wish.scene, wish.texts, wish.width, wish.height, wish.moving, divisor, last_ms);
-    for (size_t i = 0; i < rungs.size(); ++i) {
-        const bool last = i + 1 == rungs.size(), exact = last && !wish.moving;
-        if (exact && !order) {
-            const auto before = shown();  // it may be there already
-            if (before && before->complete && before->wish == wish.number) break;
-        }
-        const bool was_made = studio.last_ms(rungs[i]) > 0;
-        const auto shown = studio.render(rungs[i], *read(wish.scene, rungs[i]), exact, report);
+    if (const auto before = shown(); order && before && before->complete && before->wish == wish.number) return save(studio, wish, *order, before->exposure);
+    if (!wish.moving) divisor_ = pace_.divisor();
+    const Texts whole_texts = sized(wish.texts, wish.width, wish.height, 1);
+    const std::vector<Texts> rungs = ladder(wish.scene, wish.texts, wish.width, wish.height, wish.moving, divisor_, studio.last_ms(whole_texts));
+    for (const Texts& rung : rungs) {
+        const bool last = &rung == &rungs.back(), exact = last && !wish.moving, first_of_its_kind = studio.last_ms(rung) == 0;
+        const auto shown = studio.render(rung, *read(wish.scene, rung), exact, report);
         shown->wish = wish.number, shown->complete = exact, shown->since = wish.since;
-        if (i == 0 && rungs[i].at("--size") != sized(wish.texts, wish.width, wish.height, 1).at("--size") && was_made) pace_.measured(divisor, shown->ms);
+        if (&rung == &rungs.front() && !exact && !first_of_its_kind && pace_.measured(divisor_, shown->ms) && shown->ms > 2 * Pace::most_ms) divisor_ = pace_.divisor();
         publish(shown);
         if (!last) leave();
-        if (!exact || !order) continue;
-        const auto options = read(wish.scene, rungs[i]);
-        options->exr = order->exr, options->png = order->png, options->layers = order->layers;
-        check_outputs(*options);
-        studio.save(*options, shown->exposure);
-        tell([&](Status& s) { s.note = "wrote " + (order->exr.empty() ? order->png : order->exr); });
+        if (exact && order) save(studio, wish, *order, shown->exposure);
     }
+}
+
+void Worker::save(Studio& studio, const Wish& wish, const Order& order, double exposure) {
+    const auto options = read(wish.scene, sized(wish.texts, wish.width, wish.height, 1));
+    options->exr = order.exr, options->png = order.png;
+    if (!order.exr.empty()) options->layers = order.layers;
+    check_outputs(*options);
+    studio.save(*options, exposure);
+    tell([&](Status& s) { s.note = "wrote " + (order.exr.empty() ? order.png : order.exr); });
 }
 
 }  // namespace myriad::tools::view

@@ -82,12 +82,14 @@ private:
 
     void run();
     void carry_out(Studio& studio, const Wish& wish, std::optional<Order> order);
+    void save(Studio& studio, const Wish& wish, const Order& order, double exposure);
     void publish(std::shared_ptr<const Shown> shown);
     void tell(const std::function<void(Status&)>& change);
     bool superseded(const Wish& wish) const;  // by another, or by the end
 
     const std::function<void()> changed_;
-    Pace pace_;
+    Pace pace_;                      // what would be right
+    uint32_t divisor_;               // what is used: to change it while something moves would be seen as a halt
     mutable std::mutex mutex_;
     std::condition_variable wake_;
     Wish wish_;
