@@ -28,6 +28,9 @@ Window::Window(const std::string& title, int width, int height) {
         throw error;
     }
     glfwSetWindowUserPointer(window_, this);
+    glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int modifiers) {
+        if (action == GLFW_PRESS) static_cast<Window*>(glfwGetWindowUserPointer(window))->keys_.push_back({key, (modifiers & GLFW_MOD_CONTROL) != 0});
+    });
     glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
         auto& dropped = static_cast<Window*>(glfwGetWindowUserPointer(window))->dropped_;
         dropped.insert(dropped.end(), paths, paths + count);

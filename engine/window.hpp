@@ -27,11 +27,18 @@ public:
     bool closing() const;
     void wait(double seconds) const;  // for an event, so long at most; events are heard in here
     static void wake();               // ends wait(), from any thread
+    // Keys that went down since the last call, by GLFW's names; however short they were held, none is lost.
+    struct Key {
+        int key;
+        bool control;
+    };
+    std::vector<Key> take_keys() { return std::exchange(keys_, {}); }
     // Files that were dropped on it since the last call.
     std::vector<std::string> take_dropped() { return std::exchange(dropped_, {}); }
 
 private:
     GLFWwindow* window_ = nullptr;
+    std::vector<Key> keys_;
     std::vector<std::string> dropped_;
 };
 

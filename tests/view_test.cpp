@@ -94,9 +94,9 @@ protected:
     std::string hands(const std::string& what) const { return "DISPLAY=" + screen_->display + " xdotool " + what; }
     void hand(const std::string& what) { EXPECT_EQ(shell(hands(what)), 0) << what; }
 
-    // The first line from where the last one ended that has `part` in it. Minutes at most: machines can be busy.
+    // The first line from where the last one ended that has `part` in it. A minute at most, for machines can be busy; none once something has failed.
     std::string await(const std::string& part) {
-        for (int i = 0; i < 9000; ++i, std::this_thread::sleep_for(20ms)) {
+        for (int i = 0; i < 3000 && !HasFailure(); ++i, std::this_thread::sleep_for(20ms)) {
             const std::string text = log();
             const size_t at = text.find(part, heard_);
             const size_t end = at == std::string::npos ? at : text.find('\n', at);
@@ -126,12 +126,13 @@ protected:
     std::string rendered(const std::string& ending, const std::string& more = "") {
         hand("key ctrl+c");
         const std::string said = await("message: copied: myriad render");
+        if (HasFailure()) return "";
         std::string command = said.substr(said.find("copied: myriad") + 14);
         command = command.substr(0, command.find(" --png view.png"));
         const std::string file = folder / ("rendered" + ending);
         EXPECT_EQ(shell("cd " + folder.path.string() + " && " MYRIAD_PROGRAM + command + " -q -o " + file + more), 0) << command;
         hand("key Escape");
-        await("message: ");
+        await("message gone");
         return bytes_of(file);
     }
 
@@ -171,7 +172,7 @@ TEST_F(view_window, shows_moves_switches_resizes_opens_and_closes) {
     EXPECT_TRUE(shared == rendered(".png")) << "by megaviews";
 
     // Another size; hidden and shown again.
-    hand("windowsize " + window_ + " 560x240");
+    hand("windowsize " + window_ + " 560 240");
     const std::string larger = await("view: complete");
     EXPECT_NE(larger.find("x240 of wish"), std::string::npos) << larger;
     hand("windowunmap " + window_);

@@ -41,7 +41,7 @@ public:
             if (size.empty()) continue;  // minimised
             follow_scene();
             ui_.begin(size.width, size.height);
-            control(state_, ImGui::GetIO().DeltaTime);
+            control(state_, window_.take_keys(), ImGui::GetIO().DeltaTime);
             play(state_, ImGui::GetIO().DeltaTime);
             draw(size);
             ui_.end();
@@ -107,12 +107,12 @@ private:
         show_picture(area, picture_);
         show_status(state_, area, status, shown_.get());
         const ImVec2 image = image_size(area);
-        if (ImGui::GetIO().KeyCtrl && ImGui::IsKeyPressed('C', false) && !ImGui::GetIO().WantTextInput) copy_command(state_, image);
+        if (std::exchange(state_.copies, false)) copy_command(state_, image);
         show_panel(state_, status, shown_.get(), image);
         show_message(state_, area, status);
         show_help(state_);
         if (status.error != error_) error_ = status.error, log(error_.empty() ? "well again" : "error: " + error_);
-        if (state_.message != message_) message_ = state_.message, log("message: " + message_);
+        if (state_.message != message_) message_ = state_.message, log(message_.empty() ? "message gone" : "message: " + message_);
         if (status.note != note_) note_ = status.note, log(note_);
         state_.kept.divisor = status.divisor ? status.divisor : state_.kept.divisor;
     }

@@ -10,8 +10,6 @@
 namespace myriad::tools::view {
 namespace {
 
-bool pressed(int key) { return ImGui::IsKeyPressed(key, false); }
-
 void drag(State& state) {
     const ImGuiIO& io = ImGui::GetIO();
     if (io.WantCaptureMouse) return;
@@ -96,14 +94,15 @@ void play(State& state, float seconds) {
     state.moved = true;
 }
 
-void control(State& state, float seconds) {
+void control(State& state, std::span<const engine::Window::Key> keys, float seconds) {
     ImGuiIO& io = ImGui::GetIO();
     if (state.facts) drag(state);
     if (io.WantTextInput) return;  // letters are letters
-    if (io.KeyCtrl) {
-        if (pressed(GLFW_KEY_Q)) state.quits = true;
-        return;
-    }
+    const auto pressed = [&](int key, bool control = false) {
+        return std::ranges::any_of(keys, [&](const engine::Window::Key& k) { return k.key == key && k.control == control; });
+    };
+    if (pressed(GLFW_KEY_Q, true)) state.quits = true;
+    if (pressed(GLFW_KEY_C, true)) state.copies = true;
     if (pressed(GLFW_KEY_F1) || pressed(GLFW_KEY_H)) state.shows_help = !state.shows_help;
     if (pressed(GLFW_KEY_ESCAPE)) state.shows_help = false, state.message.clear();
     if (pressed(GLFW_KEY_TAB)) state.shows_panel = !state.shows_panel;
@@ -113,7 +112,7 @@ void control(State& state, float seconds) {
     if (pressed(GLFW_KEY_F3)) state.saves_exr = free_name(".exr");
     if (pressed(GLFW_KEY_F4)) state.saves_window = free_name(".png");
     if (!state.facts) return;
-    keys_that_fly(state, seconds);
+    if (!io.KeyCtrl) keys_that_fly(state, seconds);
     if (pressed(GLFW_KEY_R)) use_camera(state, "", state.facts->first);
     for (size_t i = 0; i < std::min<size_t>(9, state.facts->cameras.size()); ++i)
         if (pressed(GLFW_KEY_1 + int(i))) use_camera(state, std::to_string(i), state.facts->cameras[i]);

@@ -39,6 +39,7 @@ struct State {
     bool moved = false;               // of that, something moves: what is soon is better than what is good
     std::string saves_exr, saves_png; // files to be written
     std::string saves_window;         // the same, of the window itself
+    bool copies = false;              // the command line is asked for
 
     struct Look {                     // of the panel at what changes seldom
         Texts texts;
