@@ -19,8 +19,8 @@ namespace {
 
 TEST_F(command_line, help_names_every_option) {
     const std::map<std::string, Arguments> options = {
-        {"", {"render", "convert", "compare", "bench", "info", "--version"}},
-        {"render", {"SCENE",     "--output",   "--png",  "--size",    "--camera",  "--seed",    "--primary", "--primary-pixels", "--visibility", "--append",
+        {"", {"render", "view", "convert", "compare", "bench", "info", "--version"}},
+        {"render", {"SCENE",     "--output",   "--png",  "--size",    "--camera", "--eye", "--target", "--yfov",  "--seed",    "--primary", "--primary-pixels", "--visibility", "--append",
                     "--vpls",    "--bounces",  "--map-size",          "--epsilon", "--samples", "--gather", "--gather-distance",     "--filter",
                     "--vpl-bound", "--bias",   "--exposure",          "--memory-limit",         "--stats",      "--trace",
                     "--aov",     "--cache",  "--instances",         "--sky",     "--device",   "--repeat", "--capture-frame", "--float", "--animation", "--time", "--frames", "--fps", "--loop", "--camera-path", "--rebuild", "--env", "--env-lights", "--env-rotation", "--env-strength", "--quiet",   "1:1",       "builtin:cornell", "W/sr"}},
@@ -28,11 +28,35 @@ TEST_F(command_line, help_names_every_option) {
                      "--all-heat-maps", "--junit", "--bless"}},
         {"bench", {"--json"}},
         {"convert", {"IN", "OUT", "--unit", "--up", "--crease", "--colors", "--seed", "--quiet", ".gltf", ".glb", ".obj", ".ply.gz", ".stl", ".fbx", ".dae", ".json", "builtin:NAME"}},
+        {"view", {"SCENE", "--window", "--fresh", "--verbose", "--vpls", "--visibility", "--eye", "--exposure", "F1", "view.json", "builtin:cornell"}},
         {"info", {"--json", "--device"}}};
     for (const auto& [command, names] : options) {
         succeed(command.empty() ? Arguments{"-h"} : Arguments{command, "-h"});
         for (const std::string& name : names) EXPECT_TRUE(contains(last.out, name)) << command << " -h lacks " << name;
     }
+}
+
+TEST_F(command_line, looks_from_where_it_is_told) {
+    succeed(tiny + Arguments{"-q", "-o", folder / "camera.exr"});
+    const Arguments eye = {"--eye", "0,2.75,12", "--target=0,2.75,-1", "--yfov", "39.3"};
+    succeed(tiny + eye + Arguments{"-q", "-o", exr});
+    const Image image = read_exr(exr);
+    EXPECT_EQ(image.metadata.at("camera"), "(from 0,2.75,12)");
+    EXPECT_GT(std::abs(mean(exr) - mean(folder / "camera.exr")), 1e-4) << "it looks from elsewhere";
+    // The same by a path.
+    put(folder / "way.json", R"({"camera_path": 1, "yfov": 39.3, "keys": [{"time": 0, "eye": [0, 2.75, 12], "target": [0, 2.75, -1]}]})");
+    succeed(tiny + Arguments{"--camera-path", folder / "way.json", "--time", "0", "-q", "-o", folder / "way.exr"});
+    EXPECT_EQ(read_exr(folder / "way.exr").rgb()->r[700], image.rgb()->r[700]);
+    EXPECT_EQ(mean(folder / "way.exr"), mean(exr));
+}
+
+TEST_F(command_line, refuses_to_look_nowhere) {
+    refuse(2, tiny + Arguments{"-o", exr, "--eye", "0,1,2"}, "--eye and --target");
+    refuse(2, tiny + Arguments{"-o", exr, "--yfov", "40"}, "--yfov is about --eye");
+    refuse(2, tiny + Arguments{"-o", exr, "--eye", "0,1,2", "--target", "0,5,2"}, "straight up or down");
+    refuse(2, tiny + Arguments{"-o", exr, "--eye", "0,1,2", "--target", "0,1,2"}, "nowhere");
+    refuse(2, tiny + Arguments{"-o", exr, "--eye", "0,1,2", "--target", "0,1,1", "--camera", "0"}, "in place of a camera");
+    for (const char* wrong : {"0,1", "0,1,2,3", "a,b,c", "0,1,", "0,1,nan", "0,1,1e10"}) refuse(2, tiny + Arguments{"-o", exr, "--target", "0,0,0", "--eye", wrong}, "give X,Y,Z");
 }
 
 TEST_F(command_line, version) {

@@ -313,14 +313,6 @@ void check_choices(const RenderOptions& o) {
     if (!o.environment.file.empty() && (o.frame.visibility == passes::Visibility::brute || o.frame.visibility == passes::Visibility::ism))
         throw InputError("--visibility " + choice_name(visibilities(), o.frame.visibility) +
                          " draws no maps for the lights of an environment; give manylods, rays or none with --env");
-<<<<<<< HEAD
-    if (o.capture_frame && !renderdoc_attached())
-        throw InputError("--capture-frame is for RenderDoc, which is not attached; start the program with renderdoccmd capture, or leave the option out");
-    const uint32_t images = o.frames ? o.frames->second - o.frames->first + 1 : o.repeat;
-    if (o.capture_frame && *o.capture_frame >= images)
-        throw InputError("--capture-frame " + std::to_string(*o.capture_frame) + ": images are numbered from 0, and the last is " +
-                         std::to_string(images - 1) + "; give --repeat, or a lower number");
-=======
 }
 
 void check_outputs(const RenderOptions& o) {
@@ -328,7 +320,12 @@ void check_outputs(const RenderOptions& o) {
     if (o.exr.empty() && !o.layers.empty()) throw InputError("--aov needs an EXR to put the layers in; name one with -o FILE.exr");
     if (o.png.empty() && o.exposure) throw InputError("--exposure needs a picture to apply to; name one with --png FILE.png");
     check_choices(o);
->>>>>>> ffc27ec (myriad view: a window with a device of its own, a panel made of render's options, a worker that climbs from previews to render's image)
+    if (o.capture_frame && !renderdoc_attached())
+        throw InputError("--capture-frame is for RenderDoc, which is not attached; start the program with renderdoccmd capture, or leave the option out");
+    const uint32_t images = o.frames ? o.frames->second - o.frames->first + 1 : o.repeat;
+    if (o.capture_frame && *o.capture_frame >= images)
+        throw InputError("--capture-frame " + std::to_string(*o.capture_frame) + ": images are numbered from 0, and the last is " +
+                         std::to_string(images - 1) + "; give --repeat, or a lower number");
     for (const auto& [option, path] : {std::pair("-o", o.exr), {"--png", o.png}}) check_numbered(option, path, o.frames.has_value());
     if (has_number(o.stats)) check_numbered("--stats", o.stats, o.frames.has_value());
     if (has_number(o.trace)) throw InputError("--trace '" + o.trace + "': a time line is one for all frames; give a plain name");

@@ -184,7 +184,11 @@ private:
         for (const char* name : {"--camera", "--eye", "--target", "--yfov", "--time", "--animation", "--loop", "--rebuild", "--env", "--env-lights", "--env-rotation", "--env-strength", "--size"})
             state_.kept.texts.erase(name);
         if (const auto [width, height] = window_.pixels(); width && height) state_.kept.width = int(width), state_.kept.height = int(height);
-        view::remember(config_file(), state_.kept);
+        try {
+            view::remember(config_file(), state_.kept);
+        } catch (const InputError& e) {
+            tools::say("warning", e.what());  // what was seen was seen all the same
+        }
     }
 
     const ViewOptions options_;
