@@ -163,11 +163,17 @@ TEST_F(view_window, shows_moves_switches_resizes_opens_and_closes) {
     EXPECT_TRUE(moved != first) << "the camera has not moved";
     EXPECT_TRUE(moved == rendered(".png")) << "after a move";
 
-    // Another technique, and back to where the scene looks from.
-    hand("key t");
-    await("view: complete");
+    // Back to where the scene looks from, and by another technique, beside what there was.
     hand("key r");
     await("view: complete");
+    hand("key k");
+    await("view: relMSE 0.000000");
+    hand("key t");
+    await("view: complete");
+    const std::string off = await("view: relMSE");
+    EXPECT_EQ(off.find("0.000000"), std::string::npos) << "other maps, another image";
+    hand("key x");
+    hand("key v");
     const std::string shared = save("F2", "view-0003.png");
     EXPECT_TRUE(shared == rendered(".png")) << "by megaviews";
 

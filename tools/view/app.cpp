@@ -9,6 +9,7 @@
 #include "tools/message.hpp"
 #include "tools/output_file.hpp"
 #include "tools/png.hpp"
+#include "tools/view/compare.hpp"
 #include "tools/view/controls.hpp"
 #include "tools/view/panel.hpp"
 #include "tools/view/picture.hpp"
@@ -105,14 +106,17 @@ private:
         if (shown_) picture_ = {shown_->width, shown_->height, shown_->rgba.data(), shown_->width < size.width / 2 || !shown_->complete};
         const Area area = picture_area(state_);
         show_picture(area, picture_);
+        show_comparison(state_, area, shown_);
+        if (state_.shows_lights && shown_) show_lights(area, *shown_);
         show_status(state_, area, status, shown_.get());
         const ImVec2 image = image_size(area);
         if (std::exchange(state_.copies, false)) copy_command(state_, image);
-        show_panel(state_, status, shown_.get(), image);
+        show_panel(state_, status, shown_, image);
         show_message(state_, area, status);
         show_help(state_);
         if (status.error != error_) error_ = status.error, log(error_.empty() ? "well again" : "error: " + error_);
         if (state_.message != message_) message_ = state_.message, log(message_.empty() ? "message gone" : "message: " + message_);
+        if (state_.compare.measured != measured_) measured_ = state_.compare.measured, log(measured_ ? "relMSE " + std::to_string(state_.compare.rel_mse) : "nothing to compare with");
         if (status.note != note_) note_ = status.note, log(note_);
         state_.kept.divisor = status.divisor ? status.divisor : state_.kept.divisor;
     }
@@ -198,7 +202,7 @@ private:
     engine::Swapchain swapchain_;
     Ui ui_;
     Worker worker_;
-    std::shared_ptr<const Shown> shown_, last_shown_;
+    std::shared_ptr<const Shown> shown_, last_shown_, measured_;
     Texture picture_;
     ImVec2 room_{0, 0}, image_{0, 0};
     Clock::time_point resized_, moved_, input_;

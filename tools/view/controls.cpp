@@ -66,6 +66,8 @@ const std::vector<Binding>& bindings() {
         {"C", "fly or orbit"},
         {"R, 1 to 9", "the scene's first camera; one of its cameras"},
         {"T", "next technique"},
+        {"K, X", "keep this image to compare with; wipe, heat map, off"},
+        {"V", "where VPLs are, by their flux"},
         {"Space", "play or pause the animation"},
         {"[ ]", "a frame back, a frame on"},
         {"F2, F3", "save the image as PNG, as EXR with all layers"},
@@ -108,6 +110,9 @@ void control(State& state, std::span<const engine::Window::Key> keys, float seco
     if (pressed(GLFW_KEY_TAB)) state.shows_panel = !state.shows_panel;
     if (pressed(GLFW_KEY_C)) state.kept.orbits = !state.kept.orbits;
     if (pressed(GLFW_KEY_T)) next_technique(state);
+    if (pressed(GLFW_KEY_V)) state.shows_lights = !state.shows_lights;
+    if (pressed(GLFW_KEY_K)) state.keeps = true;
+    if (pressed(GLFW_KEY_X)) state.compare.mode = State::Compare::Mode((int(state.compare.mode) + 1) % 3);
     if (pressed(GLFW_KEY_F2)) state.saves_png = free_name(".png");
     if (pressed(GLFW_KEY_F3)) state.saves_exr = free_name(".exr");
     if (pressed(GLFW_KEY_F4)) state.saves_window = free_name(".png");

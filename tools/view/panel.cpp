@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "scenes/scene.hpp"
+#include "tools/view/compare.hpp"
 #include "tools/view/controls.hpp"
 #include "tools/view/figures.hpp"
 
@@ -176,7 +177,7 @@ void copy_command(State& state, const ImVec2& image) {
     say(state, "copied: " + line, false);
 }
 
-void show_panel(State& state, const Status& status, const Shown* shown, const ImVec2& image) {
+void show_panel(State& state, const Status& status, const std::shared_ptr<const Shown>& shown, const ImVec2& image) {
     const float width = panel_width(state);
     if (width == 0) return;
     const ImVec2 size = ImGui::GetIO().DisplaySize;
@@ -197,6 +198,7 @@ void show_panel(State& state, const Status& status, const Shown* shown, const Im
         for (const std::string& name : group.options)
             if (state.look.offered.contains(name)) widget(state, *find_option(name));
     }
+    if (ImGui::CollapsingHeader("Compare", ImGuiTreeNodeFlags_DefaultOpen)) compare_part(state, shown);
     if (shown && ImGui::CollapsingHeader("What it took", ImGuiTreeNodeFlags_DefaultOpen)) show_figures(state, *shown, status);
     ImGui::End();
 }

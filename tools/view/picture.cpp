@@ -20,13 +20,18 @@ Area picture_area(const State& state) {
     return {{0, 0}, {std::max(size.x - panel_width(state), 1.0f), size.y}};
 }
 
+Area fitted(const Area& area, uint32_t width, uint32_t height) {
+    const ImVec2 room = area.size();
+    const float scale = std::min(room.x / float(width), room.y / float(height));
+    const ImVec2 size{std::round(float(width) * scale), std::round(float(height) * scale)};
+    const ImVec2 low{area.low.x + std::floor((room.x - size.x) / 2), area.low.y + std::floor((room.y - size.y) / 2)};
+    return {low, {low.x + size.x, low.y + size.y}};
+}
+
 void show_picture(const Area& area, const Texture& picture) {
     if (!picture.texels) return;
-    const ImVec2 room = area.size();
-    const float scale = std::min(room.x / float(picture.width), room.y / float(picture.height));
-    const ImVec2 size{std::round(float(picture.width) * scale), std::round(float(picture.height) * scale)};
-    const ImVec2 low{area.low.x + std::floor((room.x - size.x) / 2), area.low.y + std::floor((room.y - size.y) / 2)};
-    ImGui::GetBackgroundDrawList()->AddImage(const_cast<Texture*>(&picture), low, {low.x + size.x, low.y + size.y});
+    const Area whole = fitted(area, picture.width, picture.height);
+    ImGui::GetBackgroundDrawList()->AddImage(const_cast<Texture*>(&picture), whole.low, whole.high);
 }
 
 void show_status(const State& state, const Area& area, const Status& status, const Shown* shown) {
@@ -35,9 +40,7 @@ void show_status(const State& state, const Area& area, const Status& status, con
     else if (shown && shown->complete) std::snprintf(text, sizeof text, "complete, %.2f s", shown->ms / 1000);
     else if (shown) std::snprintf(text, sizeof text, "preview, %.0f ms", shown->ms);
     else return;
-    const OptionKind& visibility = *find_option("--visibility");
-    const auto chosen = state.texts.find(visibility.name);
-    const std::string line = (chosen == state.texts.end() ? visibility.fallback : chosen->second) + "   " + text;
+    const std::string line = state.technique() + "   " + text;
     const float pad = ImGui::GetFontSize() * 0.6f;
     const ImVec2 extent = ImGui::CalcTextSize(line.c_str()), at{area.low.x + 2 * pad, area.high.y - extent.y - 2 * pad};
     ImDrawList* draw = ImGui::GetBackgroundDrawList();

@@ -16,6 +16,9 @@ struct Area {
 // What the panel leaves of the window.
 Area picture_area(const State& state);
 
+// Where an image of that size goes in it: as large as it can be, in the middle.
+Area fitted(const Area& area, uint32_t width, uint32_t height);
+
 void show_picture(const Area& area, const Texture& picture);
 void show_status(const State& state, const Area& area, const Status& status, const Shown* shown);
 void show_message(State& state, const Area& area, const Status& status);

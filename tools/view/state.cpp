@@ -20,6 +20,7 @@ void open(State& state, const std::string& scene) {
     recent.insert(recent.begin(), scene);
     if (recent.size() > most_recent) recent.resize(most_recent);
     state.plays = false, state.seconds = 0, state.facts.reset();
+    state.compare = {};
     state.message.clear();
     state.changed = true;
 }
@@ -36,6 +37,12 @@ void set(State& state, const std::string& name, const std::string& text) {
     state.message.clear();
     state.changed |= texts != state.texts;
     state.texts = std::move(texts);
+}
+
+std::string State::technique() const {
+    const OptionKind& visibility = *find_option("--visibility");
+    const auto chosen = texts.find(visibility.name);
+    return chosen == texts.end() ? visibility.fallback : chosen->second;
 }
 
 void say(State& state, const std::string& message, bool is_error) { state.message = message, state.is_error = is_error; }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tools/view/cameras.hpp"
+#include "tools/view/raster.hpp"
 #include "tools/view/worker.hpp"
 
 namespace myriad::tools::view {
@@ -40,6 +41,19 @@ struct State {
     std::string saves_exr, saves_png; // files to be written
     std::string saves_window;         // the same, of the window itself
     bool copies = false;              // the command line is asked for
+
+    bool keeps = false;               // the image is to be kept, to compare with
+    bool shows_lights = false;        // where VPLs are
+    struct Compare {                  // with an image that is kept
+        enum class Mode { off, wipe, heat } mode = Mode::off;
+        std::shared_ptr<const Shown> kept, measured;
+        std::string kept_name;
+        float where = 0.5f;           // of the wipe
+        double rel_mse = 0;           // of `measured` against `kept`
+        std::vector<uint32_t> heat;
+        Texture heat_texture, kept_texture;
+    } compare;
+    std::string technique() const;    // by its name
 
     struct Look {                     // of the panel at what changes seldom
         Texts texts;

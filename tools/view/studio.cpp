@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/transfer.hpp"
 #include "tools/exposure.hpp"
 #include "tools/write_images.hpp"
 
@@ -111,14 +112,20 @@ std::shared_ptr<Shown> Worker::Studio::render(const Texts& texts, const RenderOp
     const Clock::time_point begin = Clock::now();
     made.frame->render(camera);
     auto shown = std::make_shared<Shown>();
-    const Image image = read_image(device_, *made.frame, {});
-    shown->exposure = options.exposure ? double(*options.exposure) : auto_exposure(*image.rgb());
+    shown->image = read_image(device_, *made.frame, {"Z"});
+    shown->camera = camera;
+    shown->exposure = options.exposure ? double(*options.exposure) : auto_exposure(*shown->image.rgb());
     shown->rgba = made.frame->tonemapped(float(shown->exposure));
     shown->done = Clock::now();
     shown->ms = made.ms = std::chrono::duration<double, std::milli>(shown->done - begin).count();
-    shown->width = image.width, shown->height = image.height;
+    shown->width = shown->image.width, shown->height = shown->image.height;
     shown->passes = made.frame->times(), shown->counters = made.frame->counters(), shown->size = made.frame->size();
     shown->memory = device_.memory();
+    if (const passes::VplPass* vpls = exact ? made.frame->vpls() : nullptr) {
+        const uint64_t count = std::min<uint64_t>(engine::download(device_, vpls->count())[0], vpls->max_vpls());
+        for (const Vpl& vpl : engine::download(device_, vpls->vpls(), count))
+            if (vpl.flux != glm::vec3(0)) shown->lights.push_back({vpl.position, vpl.flux});
+    }
     return shown;
 }
 

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "passes/frame.hpp"
+#include "tools/image.hpp"
 #include "tools/view/ladder.hpp"
 
 namespace myriad::tools::view {
@@ -41,6 +42,12 @@ struct Shown {
     uint64_t wish = 0;
     uint32_t width = 0, height = 0;
     std::vector<uint32_t> rgba;
+    Image image;             // the same in radiance, and Z
+    scenes::Camera camera;
+    struct Lamp {
+        glm::vec3 position, flux;
+    };
+    std::vector<Lamp> lights;  // VPLs that are alive; of a complete image
     bool complete = false;   // the last rung: what `render` makes
     double exposure = 1, ms = 0;
     Clock::time_point since, done;
