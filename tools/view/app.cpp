@@ -36,7 +36,7 @@ public:
     void run() {
         while (!window_.closing() && !state_.quits) {
             const bool lively = state_.plays || since(moved_) < 0.5 || since(input_) < 0.1;
-            window_.wait(lively ? 0.008 : 0.2);
+            window_.wait(lively ? 0.03 : 0.2);  // or until there is input, or something to show
             for (const std::string& file : window_.take_dropped()) open(state_, file), log("dropped " + file);
             const engine::Swapchain::Size size = swapchain_.size();
             if (size.empty()) continue;  // minimised
@@ -44,6 +44,7 @@ public:
             ui_.begin(size.width, size.height);
             control(state_, window_.take_keys(), ImGui::GetIO().DeltaTime);
             play(state_, ImGui::GetIO().DeltaTime);
+            wish();  // now, so that the worker begins while the window is drawn
             draw(size);
             ui_.end();
             if (ImGui::IsAnyMouseDown() || ImGui::GetIO().WantTextInput) input_ = Clock::now();

@@ -45,19 +45,22 @@ void blend(uint32_t& under, uint32_t over) {
 
 uint32_t texel(const Texture& t, int x, int y) { return t.texels[size_t(std::clamp(y, 0, int(t.height) - 1)) * t.width + size_t(std::clamp(x, 0, int(t.width) - 1))]; }
 
+// a, and `part` of 256 of the way to b; two channels at once.
+uint32_t between(uint32_t a, uint32_t b, uint32_t part) {
+    constexpr uint32_t two = 0x00ff00ffu;
+    const uint32_t even = (((a & two) * (256 - part) + (b & two) * part) >> 8) & two;
+    const uint32_t odd = ((a >> 8 & two) * (256 - part) + (b >> 8 & two) * part) & ~two;
+    return even | odd;
+}
+
 uint32_t sample(const Texture& t, float u, float v) {
     const float x = u * float(t.width), y = v * float(t.height);
     if (!t.smooth) return texel(t, int(std::floor(x)), int(std::floor(y)));
     const float left = std::floor(x - 0.5f), top = std::floor(y - 0.5f);
     const uint32_t fx = uint32_t((x - 0.5f - left) * 256), fy = uint32_t((y - 0.5f - top) * 256);
-    const uint32_t a = texel(t, int(left), int(top)), b = texel(t, int(left) + 1, int(top)), c = texel(t, int(left), int(top) + 1),
-                   d = texel(t, int(left) + 1, int(top) + 1);
-    uint32_t out = 0;
-    for (int k = 0; k < 4; ++k) {
-        const uint32_t up = channel(a, k) * (256 - fx) + channel(b, k) * fx, down = channel(c, k) * (256 - fx) + channel(d, k) * fx;
-        out |= ((up * (256 - fy) + down * fy + 32768) >> 16) << 8 * k;
-    }
-    return out;
+    const uint32_t up = between(texel(t, int(left), int(top)), texel(t, int(left) + 1, int(top)), fx);
+    const uint32_t down = between(texel(t, int(left), int(top) + 1), texel(t, int(left) + 1, int(top) + 1), fx);
+    return between(up, down, fy);
 }
 
 // Corners of a triangle, in 1/16 pixels, so that which side of an edge a middle is on is exact.
