@@ -169,8 +169,8 @@ TEST_F(view_window, shows_moves_switches_resizes_opens_and_closes) {
     hand("key k");
     await("view: relMSE 0.000000");
     hand("key t");
-    await("view: complete");
     const std::string off = await("view: relMSE");
+    await("view: complete");
     EXPECT_EQ(off.find("0.000000"), std::string::npos) << "other maps, another image";
     hand("key x");
     hand("key v");
