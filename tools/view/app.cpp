@@ -36,7 +36,7 @@ public:
     void run() {
         while (!window_.closing() && !state_.quits) {
             const bool lively = state_.plays || since(moved_) < 0.5 || since(input_) < 0.1;
-            window_.wait(lively ? 0.03 : 0.2);  // or until there is input, or something to show
+            window_.wait(lively ? 0.01 : 0.2);  // or until there is input, or something to show
             for (const std::string& file : window_.take_dropped()) open(state_, file), log("dropped " + file);
             const engine::Swapchain::Size size = swapchain_.size();
             if (size.empty()) continue;  // minimised
@@ -46,9 +46,11 @@ public:
             play(state_, ImGui::GetIO().DeltaTime);
             wish();  // now, so that the worker begins while the window is drawn
             draw(size);
-            ui_.end();
+            // While something moves, cores are for what is rendered: the same picture once more would only make the next one late.
+            const bool draws = shown_ != last_shown_ || since(moved_) > 0.15 || since(drawn_) > 0.1;
+            ui_.end(draws);
             if (ImGui::IsAnyMouseDown() || ImGui::GetIO().WantTextInput) input_ = Clock::now();
-            if (swapchain_.show(ui_.pixels())) note_latency();
+            if (draws && swapchain_.show(ui_.pixels())) drawn_ = Clock::now(), note_latency();
             wish();
             save(size);
         }
@@ -206,7 +208,7 @@ private:
     std::shared_ptr<const Shown> shown_, last_shown_, measured_;
     Texture picture_;
     ImVec2 room_{0, 0}, image_{0, 0};
-    Clock::time_point resized_, moved_, input_;
+    Clock::time_point resized_, moved_, input_, drawn_;
     bool was_moving_ = false;
     uint64_t wishes_ = 0;
     std::string error_, note_, message_;  // that were logged last

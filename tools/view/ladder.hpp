@@ -8,7 +8,7 @@ namespace myriad::tools::view {
 // How much smaller than the wish the picture is that is shown while things move, found by measuring: each rung of `divisors` is one.
 class Pace {
 public:
-    static constexpr double most_ms = 75;   // to render; the window, and the input, take the rest of 100 ms
+    static constexpr double most_ms = 60;   // to render; the window, and the input, take the rest of 100 ms
     static constexpr uint32_t divisors[] = {1, 2, 3, 4, 5, 6, 8, 10, 12, 16};
 
     explicit Pace(uint32_t divisor = 6);

@@ -146,10 +146,14 @@ void time_part(State& state) {
     if (ImGui::SliderFloat("##time", &seconds, 0, float(std::max(state.facts->seconds, 0.01)), "%.2f s")) step(state, double(seconds)), state.moved = true;
 }
 
+// Many trials, so not for every step of the camera: where it is decides nothing.
 void refresh(State& state) {
     State::Look& look = state.look;
-    if (look.valid && look.texts == state.texts && look.scene == state.scene) return;
-    look = {.texts = state.texts, .scene = state.scene, .valid = state.facts != nullptr};
+    Texts texts = state.texts;
+    for (const char* where : {"--camera", "--eye", "--target", "--yfov"}) texts.erase(where);
+    if (texts.contains("--time")) texts["--time"] = "0";
+    if (look.valid && look.texts == texts && look.scene == state.scene) return;
+    look = {.texts = std::move(texts), .scene = state.scene, .valid = state.facts != nullptr};
     for (const Group& group : groups())
         for (const std::string& name : group.options)
             if (offered(*find_option(name), state.scene, state.texts, state.facts ? state.facts->needs : Needs{})) look.offered.insert(name);

@@ -76,8 +76,9 @@ void Ui::begin(uint32_t width, uint32_t height) {
     ImGui::NewFrame();
 }
 
-void Ui::end() {
+void Ui::end(bool draws) {
     ImGui::Render();
+    if (!draws) return;
     pixels_.assign(size_t(width_) * height_, backdrop);
     draw(*ImGui::GetDrawData(), pixels_, width_, height_);
 }

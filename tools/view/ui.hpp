@@ -17,9 +17,9 @@ public:
     ~Ui();
     Ui(const Ui&) = delete;
 
-    // What is drawn between these is drawn into pixels() by the second.
+    // What is drawn between these is drawn into pixels() by the second, if it `draws`.
     void begin(uint32_t width, uint32_t height);
-    void end();
+    void end(bool draws);
     std::span<const uint32_t> pixels() const { return pixels_; }
 
 private:
