@@ -38,6 +38,7 @@ void set_style(float scale) {
 Ui::Ui(engine::Window& window) : window_(window) {
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr;  // what is kept is kept elsewhere
+    ImGui::GetIO().BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;  // lists of more than 65,536 corners, such as of thousands of discs
     ImGui_ImplGlfw_InitForOther(window.handle(), true);
 }
 
