@@ -133,6 +133,8 @@ void Frame::make_lighting(const scenes::Scene& scene, compute::Derived& derived,
     const vec3 extent = triangles.hi - triangles.lo;
     const IsmScene points{derived.world(), sampling, std::max({extent.x, extent.y, extent.z})};
     if (vpl_) indirect_.emplace(make_gathering(settings.vpls, Lights::vpls, derived.world(), points));
+    if (vpl_ && settings.compensate > 0)
+        compensate_.emplace(device_, settings.width, settings.height, settings.compensate, settings.filter, bvh_.constants({{glossy_constant, size_.glossy}}));
     if (far_lights > 0) natural_.emplace(make_gathering(far_lights, Lights::far, derived.world(), points));
     if (point_lights_) lamps_.emplace(make_gathering(uint32_t(lights_.points_apart().size()), Lights::points, derived.world(), points));
 }
@@ -266,10 +268,15 @@ void Frame::render_once(const scenes::Camera& camera) {
     if (indirect_) gather(*indirect_, vpl_->vpls(), vpl_->views(), vpl_->count(), pixel_angle, "gathering");
     if (natural_) gather(*natural_, environment_->lights(), environment_->views(), environment_->count(), pixel_angle, "gathering from the environment");
     if (lamps_) gather(*lamps_, point_lights_->lights(), point_lights_->views(), point_lights_->count(), pixel_angle, "gathering from point lights");
+    if (compensate_) {
+        auto scope = recorder_.scope("compensate");
+        compensate_->record(recorder_, {gbuffer(), geometry_, bvh_, lights_, vpl_bound_, settings_.bounces, settings_.seed}, pixel_angle, exhausted_);
+    }
     {
         auto scope = recorder_.scope("compose");
         compose_.record(recorder_, gbuffer(), indirect_ ? &indirect_->irradiance() : nullptr, natural_ ? &natural_->irradiance() : nullptr,
-                        direct_ ? &direct_->radiance() : nullptr, lamps_ ? &lamps_->irradiance() : nullptr);
+                        direct_ ? &direct_->radiance() : nullptr, lamps_ ? &lamps_->irradiance() : nullptr,
+                        compensate_ ? &compensate_->irradiance() : nullptr);
     }
     read_back_words();
     if (vpl_) counters_.vpls = host_words_.span()[0];

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "compute/derived/derived.hpp"
+#include "passes/compensate/compensate.hpp"
 #include "passes/compose/compose.hpp"
 #include "passes/deform/deform.hpp"
 #include "passes/direct/direct.hpp"
@@ -75,6 +76,7 @@ struct FrameSettings {
     uint32_t log2_samples = 20;   // surface samples, leaves of the BSH
     uint32_t octree_levels = 0;   // megaviews: draws the scene's octree of so many levels below the root, built anew whenever something has moved; 0: the BSH
     float vpl_bound = 0;          // bound of the geometry term, 1/m^2; 0: pi * vpls / area (passes/gather)
+    uint32_t compensate = 0;      // rays a pixel that give back what the bound cuts off; 0: it stays lost (passes/compensate)
     float bias = 0.5f;            // receiver bias, half diagonals of a texel
     // The sphere tree is built anew, where samples stand by then, when its extent has grown by this factor since it was built: 0: whenever
     // something has moved.
@@ -199,6 +201,7 @@ private:
     std::optional<compute::Svo> octree_;
     std::optional<PointsPass> points_;
     std::optional<Gathering> indirect_, natural_, lamps_;  // of VPLs; of the environment's lights; of point lights
+    std::optional<CompensatePass> compensate_;
     ComposePass compose_;
     std::optional<TonemapPass> tonemap_;
     engine::Array<uint> exhausted_, host_words_;

@@ -13,7 +13,7 @@ namespace {
 class ReferenceFrameTest : public engine::DeviceTest {
 protected:
     static constexpr uint32_t width = 24, height = 18, block = 6, seeds = 6;
-    static constexpr float bound = 2;  // 1/m^2, of both: without, VPLs' light has no variance to estimate errors by
+    static constexpr float bound = 2;  // 1/m^2, of the VPLs: without, their light has no variance to estimate errors by
 
     // Means of blocks of pixels, green.
     static std::vector<double> blocks(const std::function<double(size_t)>& green) {
@@ -23,9 +23,11 @@ protected:
         return means;
     }
 
-    void expect_same(scenes::Scene& scene, const scenes::Camera& camera, uint32_t bounces, uint32_t samples, uint32_t vpls) {
+    // `compensate`: rays a pixel that give back what the bound cuts off; 0: paths are bounded as VPLs are.
+    void expect_same(scenes::Scene& scene, const scenes::Camera& camera, uint32_t bounces, uint32_t samples, uint32_t vpls, uint32_t compensate = 0) {
         const scenes::Triangles triangles = scenes::flatten(scene, scenes::Sharing::never);
-        reference::Settings rs{.width = width, .height = height, .bounces = bounces, .model = reference::Model::diffuse, .bound = bound, .samples = samples};
+        reference::Settings rs{.width = width, .height = height, .bounces = bounces, .model = reference::Model::diffuse, .samples = samples};
+        if (compensate == 0) rs.bound = bound;
         reference::Film film(width, height);
         reference::Reference(scene, scene.lights, triangles, camera, rs).add_to(film);
         const tools::Image image = film.image(false);
@@ -37,7 +39,7 @@ protected:
         for (uint32_t seed = 1; seed <= seeds; ++seed) {
             passes::FrameSettings s;
             s.width = width, s.height = height, s.vpls = vpls, s.bounces = bounces, s.seed = seed, s.subset = 0;
-            s.visibility = passes::Visibility::rays, s.brdf = passes::Brdf::diffuse, s.vpl_bound = bound;
+            s.visibility = passes::Visibility::rays, s.brdf = passes::Brdf::diffuse, s.vpl_bound = bound, s.compensate = compensate;
             passes::Frame frame(device, scene, triangles, s);
             frame.render(camera);
             const std::vector<vec4> indirect = engine::download(device, frame.indirect());
@@ -81,6 +83,19 @@ TEST_F(ReferenceFrameTest, emitters_and_two_bounces) {
 TEST_F(ReferenceFrameTest, sun_and_a_bounce) {
     scenes::Scene scene = scenes::load("builtin:atrium?detail=0.25");
     expect_same(scene, scene.cameras[0], 1, 512, 1024);
+}
+
+// What the bound cuts off is given back: paths without a bound.
+TEST_F(ReferenceFrameTest, compensated_emitters_and_two_bounces) {
+    scenes::Scene scene = scenes::load("builtin:cornell");
+    Kit kit;
+    kit.look({0.31f, 2.6f, 9.7f}, {0.13f, 2.5f, 0});
+    expect_same(scene, kit.scene.cameras[0], 2, 512, 1024, 16);
+}
+
+TEST_F(ReferenceFrameTest, compensated_sun_and_a_bounce) {
+    scenes::Scene scene = scenes::load("builtin:atrium?detail=0.25");
+    expect_same(scene, scene.cameras[0], 1, 512, 1024, 16);
 }
 
 }  // namespace

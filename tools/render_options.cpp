@@ -79,6 +79,7 @@ void add_technique(CLI::App& command, RenderOptions& o) {
     add_choice(command, "--filter", s.filter, {{"on", true}, {"off", false}}, "average the subsets of blocks of pixels, across no edge");
     add_choice(command, "--brdf", s.brdf, brdfs(), "how what is seen reflects: as glTF's metallic-roughness materials say, or their diffuse part\nalone, metals black. VPLs are diffuse in either case");
     add_number(command, "--vpl-bound", s.vpl_bound, 1e-30f, 1e30f, "bound of the geometry term, 1/m^2; unless given pi * VPLs / area");
+    add_whole(command, "--compensate", s.compensate, 0, compensate_most_rays, "short rays a pixel that give back, to diffuse surfaces, the light that the bound cuts off; 0: it stays lost");
     add_whole(command, "--map-size", s.maps.map_size, 2, 1024, "texels a side of each half of a map");
     add_number(command, "--epsilon", s.maps.epsilon, 1e-3f, 1e6f, "largest diameter of a node in the cut, in texels of its map");
     add_choice(command, "--coverage", s.maps.coverage, coverages(), "what a node covers that is smaller than a texel: the texels whose middles it covers (exact), all of the texel that it is in,\n"
@@ -297,6 +298,9 @@ void check_choices(const RenderOptions& o) {
     if (o.frame.maps.coverage != coverage_exact && o.frame.visibility != passes::Visibility::manylods && o.frame.visibility != passes::Visibility::megaviews)
         throw InputError("--coverage " + choice_name(coverages(), o.frame.maps.coverage) + " is about nodes that are drawn, and --visibility " +
                          choice_name(visibilities(), o.frame.visibility) + " draws none; give manylods or megaviews");
+    if (o.frame.compensate && (o.frame.vpls == 0 || o.frame.visibility == passes::Visibility::none))
+        throw InputError(std::string("--compensate gives back what VPLs lose, by rays to what is near, and ") +
+                         (o.frame.vpls == 0 ? "--vpls 0 has none; leave one of them out" : "--visibility none knows nothing in the way; give another --visibility"));
     if (o.gather_distance && o.frame.gather != passes::GatherMethod::culled)
         throw InputError("--gather-distance is about culled, and --gather " + show_gather(o.frame) + " has no cut-off; give --gather culled:K with it");
     if (o.frame.gather != passes::GatherMethod::subset && o.frame.maps.update != passes::CutUpdate::basic)

@@ -160,6 +160,7 @@ ordered_json settings_json(const passes::FrameSettings& s, float vpl_bound, bool
     if (std::isfinite(s.gather_distance)) json["gather_distance"] = shortest(s.gather_distance);
     json["filter"] = s.filter;
     if (s.vpls > 0) json["vpl_bound"] = shortest(vpl_bound);
+    if (s.vpls > 0 && s.compensate > 0) json["compensate"] = s.compensate;
     if (s.visibility == passes::Visibility::rays || s.visibility == passes::Visibility::none) return json;
     json["map_size"] = s.maps.map_size;
     json["bias"] = shortest(s.bias);

@@ -11,6 +11,7 @@ void main() {
     vec3 mirrored = vec3(0.0f);
     if (push.has_irradiance != 0u) irradiance = push.irradiance.at[i].xyz;
     if (push.has_natural != 0u) irradiance += push.natural.at[i].xyz;
+    if (push.has_beyond != 0u) irradiance += push.beyond.at[i].xyz;
     if (push.has_mirrored != 0u && push.has_irradiance != 0u) mirrored = push.irradiance.at[push.count + i].xyz;
     if (push.has_mirrored != 0u && push.has_natural != 0u) mirrored += push.natural.at[push.count + i].xyz;
     const vec3 indirect = push.albedo.at[i].xyz * irradiance * (1.0f / 3.14159265f) + mirrored;

@@ -10,7 +10,7 @@ ComposePass::ComposePass(engine::Device& device, uint32_t width, uint32_t height
       all_direct_(device, "images", "all direct light", lamps ? uint64_t(width) * height : 0) {}
 
 void ComposePass::record(engine::Recorder& recorder, const GBuffer& gbuffer, const engine::Array<vec4>* irradiance,
-                         const engine::Array<vec4>* natural, const engine::Array<vec4>* direct, const engine::Array<vec4>* lamps) {
+                         const engine::Array<vec4>* natural, const engine::Array<vec4>* direct, const engine::Array<vec4>* lamps, const engine::Array<vec4>* beyond) {
     assert(!lamps || all_direct());
     recorder.dispatch(compose_,
                       ComposePush{.albedo = recorder.read(gbuffer.albedo),
@@ -19,6 +19,7 @@ void ComposePass::record(engine::Recorder& recorder, const GBuffer& gbuffer, con
                                   .natural = natural ? recorder.read(*natural) : Float4s{},
                                   .direct = direct ? recorder.read(*direct) : Float4s{},
                                   .lamps = lamps ? recorder.read(*lamps) : Float4s{},
+                                  .beyond = beyond ? recorder.read(*beyond) : Float4s{},
                                   .indirect = recorder.write(indirect_),
                                   .beauty = recorder.write(beauty_),
                                   .all_direct = lamps ? recorder.write(all_direct_) : Float4s{},
@@ -27,7 +28,8 @@ void ComposePass::record(engine::Recorder& recorder, const GBuffer& gbuffer, con
                                   .has_natural = natural != nullptr,
                                   .has_mirrored = gbuffer.glossy(),
                                   .has_direct = direct != nullptr,
-                                  .has_lamps = lamps != nullptr},
+                                  .has_lamps = lamps != nullptr,
+                                  .has_beyond = beyond != nullptr},
                       gbuffer.pixels());
 }
 

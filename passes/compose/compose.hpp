@@ -11,9 +11,10 @@ public:
     // `lamps`: there are lights that are gathered and whose light is direct.
     ComposePass(engine::Device& device, uint32_t width, uint32_t height, bool lamps = false);
 
-    // Null: the scene has no such light. `irradiance` of VPLs, `natural`, of the environment, and `lamps` have second halves where the G-buffer is glossy.
+    // Null: the scene has no such light. `irradiance` of VPLs, `natural`, of the environment, and `lamps` have second halves where the G-buffer is glossy;
+    // `beyond`, what the VPLs' bound cuts off (passes/compensate), has none.
     void record(engine::Recorder& recorder, const GBuffer& gbuffer, const engine::Array<vec4>* irradiance, const engine::Array<vec4>* natural,
-                const engine::Array<vec4>* direct, const engine::Array<vec4>* lamps = nullptr);
+                const engine::Array<vec4>* direct, const engine::Array<vec4>* lamps = nullptr, const engine::Array<vec4>* beyond = nullptr);
 
     const engine::Array<vec4>& indirect() const { return indirect_; }
     const engine::Array<vec4>& beauty() const { return beauty_; }

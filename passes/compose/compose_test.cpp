@@ -14,16 +14,17 @@ protected:
         std::vector<vec4> indirect, beauty, direct;
     };
     Result run(const HostGBuffer& host, const std::vector<vec4>* irradiance, const std::vector<vec4>* natural, const std::vector<vec4>* direct,
-               const std::vector<vec4>* lamps = nullptr) {
+               const std::vector<vec4>* lamps = nullptr, const std::vector<vec4>* beyond = nullptr) {
         const GBuffer gbuffer = host.on(device);
-        engine::Array<vec4> e, n, d, l;
+        engine::Array<vec4> e, n, d, l, b;
         if (irradiance) e = on_device(*irradiance);
         if (natural) n = on_device(*natural);
         if (direct) d = on_device(*direct);
         if (lamps) l = on_device(*lamps);
+        if (beyond) b = on_device(*beyond);
         ComposePass compose(device, host.width, host.height, lamps != nullptr);
         engine::Recorder recorder(device);
-        compose.record(recorder, gbuffer, irradiance ? &e : nullptr, natural ? &n : nullptr, direct ? &d : nullptr, lamps ? &l : nullptr);
+        compose.record(recorder, gbuffer, irradiance ? &e : nullptr, natural ? &n : nullptr, direct ? &d : nullptr, lamps ? &l : nullptr, beyond ? &b : nullptr);
         recorder.submit_and_wait();
         Result result{engine::download(device, compose.indirect()), engine::download(device, compose.beauty())};
         EXPECT_EQ(compose.all_direct() != nullptr, lamps != nullptr);
@@ -80,6 +81,16 @@ TEST_F(ComposeTest, lamps_are_direct_light) {
         for (const auto* d : {static_cast<const std::vector<vec4>*>(nullptr), &direct})
             for (const auto* e : {static_cast<const std::vector<vec4>*>(nullptr), &irradiance})
                 EXPECT_EQ(differing(compose_ref(g, e, nullptr, d, &lamps), run(g, e, nullptr, d, &lamps)), 0u) << glossy;
+    }
+}
+
+TEST_F(ComposeTest, what_the_bound_cuts_off_is_indirect_light) {
+    HostGBuffer g = random_gbuffer(17, 9);
+    const auto irradiance = random_image(2 * g.pixels(), 9), beyond = random_image(g.pixels(), 9);
+    for (const bool glossy : {false, true}) {
+        if (glossy) g.shine(3, vec3(0.5f), 0.5f, {0, 0, 1});
+        for (const auto* e : {static_cast<const std::vector<vec4>*>(nullptr), &irradiance})
+            EXPECT_EQ(differing(compose_ref(g, e, nullptr, nullptr, nullptr, &beyond), run(g, e, nullptr, nullptr, nullptr, &beyond)), 0u) << glossy;
     }
 }
 

@@ -10,17 +10,7 @@ layout(constant_id = 2) const bool guided = false;
 
 float share_end(uint light) { return guided ? push.shares.at[light] : push.lights.at[light].cdf; }
 
-// The first light whose share ends beyond `selection`. A light without power has none.
-uint light_for(float selection) {
-    uint low = 0u;
-    uint high = push.light_count - 1u;
-    while (low < high) {
-        const uint middle = (low + high) / 2u;
-        if (share_end(middle) > selection) high = middle;
-        else low = middle + 1u;
-    }
-    return low;
-}
+#include "passes/vpl/choose_light.glsl"
 
 // Which of the guide's strips `x` falls in, one coordinate of a place: returns the place that is as far through the strip
 // of the domain, where `density` times as many paths go as without a guide. Strips only get wider or narrower, in order:
@@ -47,7 +37,7 @@ void main() {
     const uint path = thread_index();
     if (path >= push.on.paths) return;
     const float selection = path_selection(path, push.on.paths, push.on.seed);
-    const uint chosen = light_for(selection);
+    const uint chosen = light_for(selection, push.light_count);
     const Light light = push.lights.at[chosen];
     const float before = chosen > 0u ? share_end(chosen - 1u) : 0.0;
     // The share as stored, rounded: it is what the choice is really made by.
