@@ -81,7 +81,8 @@ Frame::Frame(engine::Device& device, const scenes::Scene& scene, const scenes::T
     low_ = triangles.lo, high_ = triangles.hi;
     reach_ = std::max({far.x, far.y, far.z});
     const double area = total_area(world);
-    vpl_bound_ = settings.vpl_bound > 0 ? settings.vpl_bound : area > 0 ? float(std::min(3.14159265 * settings.vpls / area, 1e30)) : 1e30f;
+    const uint32_t bounding = settings.compensate > 0 ? std::min(settings.vpls, compensated_vpls) : settings.vpls;
+    vpl_bound_ = settings.vpl_bound > 0 ? settings.vpl_bound : area > 0 ? float(std::min(3.14159265 * bounding / area, 1e30)) : 1e30f;
     size_.triangles = world.count();
     size_.stored_triangles = triangles.triangles.size();
     size_.instances = std::count_if(world.instances.begin(), world.instances.end(), [](const Instance& i) { return !(i.flags & instance_in_world); });

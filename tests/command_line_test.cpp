@@ -22,7 +22,7 @@ TEST_F(command_line, help_names_every_option) {
         {"", {"render", "view", "convert", "compare", "bench", "info", "--version"}},
         {"render", {"SCENE",     "--output",   "--png",  "--size",    "--camera", "--eye", "--target", "--yfov",  "--seed",    "--primary", "--primary-pixels", "--visibility", "--append",
                     "--vpls",    "--bounces",  "--map-size",          "--epsilon", "--samples", "--gather", "--gather-distance",     "--filter",
-                    "--vpl-bound", "--bias",   "--exposure",          "--memory-limit",         "--stats",      "--trace",
+                    "--vpl-bound", "--compensate", "--bias",   "--exposure",          "--memory-limit",         "--stats",      "--trace",
                     "--aov",     "--cache",  "--instances",         "--sky",     "--device",   "--repeat", "--capture-frame", "--float", "--animation", "--time", "--frames", "--fps", "--loop", "--camera-path", "--rebuild", "--env", "--env-lights", "--env-rotation", "--env-strength", "--quiet",   "1:1",       "builtin:cornell", "W/sr"}},
         {"compare", {"REF", "TEST", "--json", "--fail-above", "--fail-below", "--layer", "--diff", "--diff-metric", "--ppd", "--tolerance", "--golden", "--heat-maps",
                      "--all-heat-maps", "--junit", "--bless"}},
@@ -100,6 +100,9 @@ TEST_F(command_line, bad_values) {
     refuse(2, base + Arguments{"--gather", "subset:0"}, "--gather");
     refuse(2, base + Arguments{"--gather", "tree:4097"}, "from 1 to 4096");
     refuse(2, base + Arguments{"--gather", "tree:8", "--gather-distance", "2"}, "culled:K");
+    refuse(2, base + Arguments{"--compensate", "256"}, "--compensate '256': give a whole number");
+    refuse(2, base + Arguments{"--compensate", "1", "--vpls", "0"}, "--vpls 0 has none");
+    refuse(2, base + Arguments{"--compensate", "1", "--visibility", "none"}, "give another --visibility");
     refuse(2, base + Arguments{"--gather", "culled:8", "--update", "incremental"}, "give --update basic");
     refuse(2, base + Arguments{"--filter", "maybe"}, "on, off");
     refuse(2, base + Arguments{"--aov", "Q"}, "indirect");

@@ -83,13 +83,13 @@ std::shared_ptr<RenderOptions> parsed(std::vector<std::string> arguments) {
 TEST(render_options, reach_the_settings) {
     const auto o = parsed({"scene.glb", "-o", "a.exr", "--png", "a.png", "--size", "64x48", "--visibility", "rays", "--append", "atomic",
                            "--gather", "all", "--filter", "off", "--vpls", "77", "--bounces", "3", "--map-size", "16", "--epsilon", "2.5",
-                           "--samples", "12", "--arity", "4", "--seed", "4294967295", "--vpl-bound", "9", "--bias", "0", "--exposure", "2", "--memory-limit",
+                           "--samples", "12", "--arity", "4", "--seed", "4294967295", "--vpl-bound", "9", "--compensate", "2", "--bias", "0", "--exposure", "2", "--memory-limit",
                            "5", "--aov", "Z,direct", "--float", "-q", "--repeat", "7", "--device", "1", "--camera", "c"});
     EXPECT_EQ(o->exr + o->png, "a.exra.png");
     const passes::FrameSettings& s = o->frame;
     EXPECT_TRUE(s.width == 64 && s.height == 48 && s.vpls == 77 && s.bounces == 3 && s.seed == ~0u && s.log2_samples == 12);
     EXPECT_TRUE(s.visibility == passes::Visibility::rays && s.maps.append == compute::AppendMode::atomic && s.subset == 0 && !s.filter);
-    EXPECT_TRUE(s.maps.map_size == 16 && s.maps.arity == 4 && s.maps.epsilon == 2.5f && s.vpl_bound == 9 && s.bias == 0);
+    EXPECT_TRUE(s.maps.map_size == 16 && s.maps.arity == 4 && s.maps.epsilon == 2.5f && s.vpl_bound == 9 && s.compensate == 2 && s.bias == 0);
     EXPECT_EQ(o->layers, (Names{"direct", "Z"}));
     EXPECT_TRUE(o->exposure == 2.0 && o->device.memory_limit == 5 << 20 && o->device.select == "1" && o->full_floats && o->quiet);
     EXPECT_TRUE(o->repeat == 7 && o->camera == "c" && o->scene == "scene.glb");

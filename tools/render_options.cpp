@@ -78,7 +78,7 @@ void add_technique(CLI::App& command, RenderOptions& o) {
     });
     add_choice(command, "--filter", s.filter, {{"on", true}, {"off", false}}, "average the subsets of blocks of pixels, across no edge");
     add_choice(command, "--brdf", s.brdf, brdfs(), "how what is seen reflects: as glTF's metallic-roughness materials say, or their diffuse part\nalone, metals black. VPLs are diffuse in either case");
-    add_number(command, "--vpl-bound", s.vpl_bound, 1e-30f, 1e30f, "bound of the geometry term, 1/m^2; unless given pi * VPLs / area");
+    add_number(command, "--vpl-bound", s.vpl_bound, 1e-30f, 1e30f, "bound of the geometry term, 1/m^2; unless given pi * VPLs / area,\nwith --compensate of " + std::to_string(passes::compensated_vpls) + " VPLs at most");
     add_whole(command, "--compensate", s.compensate, 0, compensate_most_rays, "short rays a pixel that give back, to diffuse surfaces, the light that the bound cuts off; 0: it stays lost");
     add_whole(command, "--map-size", s.maps.map_size, 2, 1024, "texels a side of each half of a map");
     add_number(command, "--epsilon", s.maps.epsilon, 1e-3f, 1e6f, "largest diameter of a node in the cut, in texels of its map");

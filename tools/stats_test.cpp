@@ -92,8 +92,11 @@ TEST(stats, what_did_not_run_is_absent) {
     for (const char* name : {"node_views", "cut", "vpls", "list_peak"}) EXPECT_FALSE(j["frames"][0]["counters"].contains(name)) << name;
     for (const char* name : {"epsilon", "append", "map_size"}) EXPECT_FALSE(j["settings"].contains(name)) << name;
     EXPECT_EQ(j["settings"]["visibility"], "rays");
+    EXPECT_FALSE(settings_json(settings, 1).contains("compensate"));
+    settings.compensate = 3;
+    EXPECT_EQ(settings_json(settings, 1).at("compensate"), 3);
     settings.vpls = 0;
-    EXPECT_FALSE(settings_json(settings, 1).contains("bounces"));
+    EXPECT_FALSE(settings_json(settings, 1).contains("bounces") || settings_json(settings, 1).contains("compensate"));
 }
 
 TEST(stats, table_names_passes_counters_and_files) {

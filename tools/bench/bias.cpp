@@ -60,6 +60,9 @@ public:
         image_of(exact_);
         const float usual = usual_bound_;
         sweep(exact_, traced, {"--vpl-bound", "of the usual one", {0.01f, 0.1f, 1, 10, 100, 1000}, [usual](FrameSettings& s, float v) { s.vpl_bound = v * usual; }});
+        FrameSettings compensated = exact_;
+        compensated.compensate = 4, compensated.filter = true;  // which all VPLs at every pixel leave nothing to do but this
+        sweep(compensated, traced, {"--vpl-bound, --compensate 4", "of the usual one", {0.01f, 0.1f, 1, 10, 100}, [usual](FrameSettings& s, float v) { s.vpl_bound = v * usual; }});
     }
 
 private:

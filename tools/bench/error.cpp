@@ -28,8 +28,9 @@ using passes::FrameSettings;
 using passes::GatherMethod;
 using passes::Visibility;
 
-const char* const myriad_group = "Myriad";
-const char* const rays_group = "exact rays to VPLs";
+const char* const maps_group = "Myriad: maps";
+const char* const tree_group = "Myriad: rays to VPLs that the light tree picks";
+const char* const rays_group = "rays to subsets of VPLs";
 const char* const ism_group = "imperfect shadow maps";
 const char* const brute_group = "maps of all triangles";
 const char* const path_group = "path tracer";
@@ -48,6 +49,7 @@ struct Candidate {
 std::string options_of(const FrameSettings& s) {
     const FrameSettings usual;
     std::string text = "--visibility " + choice_name(visibilities(), s.visibility) + " --vpls " + std::to_string(s.vpls) + " --gather " + show_gather(s);
+    if (s.compensate != usual.compensate) text += " --compensate " + std::to_string(s.compensate);
     if (s.seed != usual.seed) text += " --seed " + std::to_string(s.seed);
     if (s.visibility == Visibility::rays) return text;
     text += " --map-size " + std::to_string(s.maps.map_size);
@@ -61,19 +63,22 @@ std::string options_of(const FrameSettings& s) {
 
 std::vector<Candidate> candidates(const FrameSettings& base) {
     std::vector<Candidate> all;
-    const auto add = [&](const char* group, const char* technique, Visibility visibility, uint32_t map_size, GatherMethod gather, uint32_t picks, uint32_t levels, std::vector<uint32_t> vpls) {
+    const auto add = [&](const char* group, const char* technique, Visibility visibility, uint32_t map_size, GatherMethod gather, uint32_t picks, uint32_t levels, std::vector<uint32_t> vpls,
+                         uint32_t compensate = 0) {
         FrameSettings s = base;
-        s.visibility = visibility, s.maps.map_size = map_size, s.gather = gather, s.subset = picks, s.octree_levels = levels;
+        s.visibility = visibility, s.maps.map_size = map_size, s.gather = gather, s.subset = picks, s.octree_levels = levels, s.compensate = compensate;
         all.push_back({group, technique, s, std::move(vpls)});
     };
-    for (const uint32_t map_size : {16u, 32u, 64u}) {
-        add(myriad_group, "manylods", Visibility::manylods, map_size, GatherMethod::subset, 256, 0, {256, 1024, 4096, 16384});
-        add(myriad_group, "manylods", Visibility::manylods, map_size, GatherMethod::tree, 32, 0, {1024, 4096, 16384});
+    for (const uint32_t compensate : {0u, 2u}) {
+        for (const uint32_t map_size : {16u, 32u, 64u}) {
+            add(maps_group, "manylods", Visibility::manylods, map_size, GatherMethod::subset, 256, 0, {256, 1024, 4096, 16384}, compensate);
+            add(maps_group, "manylods", Visibility::manylods, map_size, GatherMethod::tree, 32, 0, {1024, 4096, 16384}, compensate);
+        }
+        for (const uint32_t map_size : {16u, 32u}) add(maps_group, "megaviews", Visibility::megaviews, map_size, GatherMethod::tree, 32, 9, {16384, 65536}, compensate);
+        for (const uint32_t picks : {8u, 32u, 128u}) add(tree_group, "rays", Visibility::rays, 32, GatherMethod::tree, picks, 0, {1024, 4096, 16384, 65536}, compensate);
     }
-    add(myriad_group, "manylods", Visibility::manylods, 32, GatherMethod::subset, 64, 0, {256, 1024, 4096});
-    for (const uint32_t map_size : {16u, 32u}) add(myriad_group, "megaviews", Visibility::megaviews, map_size, GatherMethod::tree, 32, 9, {16384, 65536});
+    add(maps_group, "manylods", Visibility::manylods, 32, GatherMethod::subset, 64, 0, {256, 1024, 4096});
     for (const uint32_t subset : {64u, 256u}) add(rays_group, "rays", Visibility::rays, 32, GatherMethod::subset, subset, 0, {256, 1024, 4096, 16384});
-    for (const uint32_t picks : {8u, 32u}) add(rays_group, "rays", Visibility::rays, 32, GatherMethod::tree, picks, 0, {1024, 4096, 16384, 65536});
     add(ism_group, "ism", Visibility::ism, 32, GatherMethod::subset, 256, 0, {256, 1024, 4096});
     add(brute_group, "brute", Visibility::brute, 32, GatherMethod::subset, 256, 0, {64, 256, 1024});
     return all;
@@ -182,7 +187,7 @@ private:
     // Medians, of those that are best within some budget.
     void time_the_best() {
         std::vector<size_t> best;
-        for (const char* group : {myriad_group, rays_group, ism_group, brute_group})
+        for (const char* group : {maps_group, tree_group, rays_group, ism_group, brute_group})
             for (const char* metric : {"relMSE", "FLIP"})
                 for (const double budget : out_.budgets)
                     if (const auto i = best_within(out_.trials, group, metric, budget)) best.push_back(*i);
@@ -210,10 +215,10 @@ private:
 
     // What each shortcut costs, with all else exact. All VPLs are gathered where the gather is not what is looked at, so there should not be too many.
     void take_apart() {
-        const auto best = best_within(out_.trials, myriad_group, "FLIP", middle());
+        const auto best = best_within(out_.trials, maps_group, "FLIP", middle());
         if (!best) return;
         FrameSettings chosen = *settings_[*best];
-        chosen.vpls = std::min(chosen.vpls, 1024u);
+        chosen.vpls = std::min(chosen.vpls, 1024u), chosen.compensate = 0;
         out_.parts_of = options_of(chosen);
         FrameSettings exact = chosen;
         exact.visibility = Visibility::rays, exact.octree_levels = 0, exact.gather = GatherMethod::subset, exact.subset = 0, exact.filter = false;
@@ -222,6 +227,9 @@ private:
         const Image made = image_of(chosen);
         part("everything", "path-traced reference", reference_, made);
         part("VPLs: few, bounded, diffuse", "path-traced reference", reference_, all);
+        FrameSettings compensated = exact;
+        compensated.compensate = 32;
+        part("VPLs: few, diffuse (bound compensated)", "path-traced reference", reference_, image_of(compensated));
         part("maps, gather and filter", "exact rays to all of the same VPLs", all, made);
         FrameSettings maps = exact;
         maps.visibility = chosen.visibility, maps.octree_levels = chosen.octree_levels;
@@ -245,7 +253,7 @@ private:
         const double exposure = auto_exposure(*reference_.rgb());
         const auto picture = [&](const Image& image) { return toned(image, float(exposure)); };
         out_.pictures.push_back({{"reference", picture(reference_)}});
-        for (const char* group : {myriad_group, rays_group, ism_group, path_group})
+        for (const char* group : {maps_group, tree_group, rays_group, ism_group, path_group})
             if (const auto i = best_within(out_.trials, group, "FLIP", middle())) {
                 const Trial& t = out_.trials[*i];
                 char title[160];
@@ -301,7 +309,7 @@ void bench_error(engine::Device& device, const BenchOptions& options, const RowS
     report.command = "myriad bench error --scenes" + list(scenes, [](const std::string& scene) { return scene; }) + " --budgets" + list(options.budgets, [](double s) { return show_number(float(s)); }) +
                      " --repeat " + std::to_string(options.repeats) + " --reference-seconds " + show_number(float(options.reference_seconds));
     report.device = device.info().name, report.driver = device.info().driver_version, report.cpu = cpu_name(), report.revision = git_revision;
-    report.groups = {myriad_group, path_group, rays_group, ism_group, brute_group};
+    report.groups = {maps_group, tree_group, path_group, rays_group, ism_group, brute_group};
     report.metrics = {"relMSE", "FLIP"};
     for (const std::string& scene : scenes) {
         BenchOptions of_scene = options;
