@@ -145,16 +145,19 @@ TEST_F(command_line, bench_coverage) {
 TEST_F(command_line, bench_bias) {
     succeed({"bench", "bias", "--scene", "builtin:cornell", "--views", "32", "--parameters", "vpl-bound", "--reference-seconds", "0.1", "--json", folder / "rows.json", "--images",
              folder / ""});
-    std::map<double, double> light;
+    std::map<double, double> light, compensated;
     for (const auto& row : rows_of(folder / "rows.json")) {
         EXPECT_EQ(row["bench"], "bias");
-        light[row["settings"]["value"]] = row["error"]["light"];
+        (row["settings"]["parameter"] == "--vpl-bound" ? light : compensated)[row["settings"]["value"]] = row["error"]["light"];
     }
     EXPECT_EQ(light.size(), 6u);
     double last = -1;
     for (const auto& [bound, more] : light) EXPECT_GE(more, std::exchange(last, more)) << bound << ": a lower bound loses more";
     EXPECT_LT(light.begin()->second, -0.1);
+    EXPECT_EQ(compensated.size(), 5u);
+    for (const auto& [bound, more] : compensated) EXPECT_LT(std::abs(more), 0.05) << bound << ": what a bound cuts off is given back";
     EXPECT_TRUE(contains(bytes_of(folder / "bias-vpl-bound.svg"), "light lost"));
+    EXPECT_TRUE(std::filesystem::exists(folder / "bias-vpl-bound-compensate-4.svg"));
 }
 
 // Which candidates are within the budget depends on the machine.

@@ -56,7 +56,7 @@ nlohmann::ordered_json effect(const RenderOptions& o) { return settings_json(o.f
 
 const std::vector<Group>& groups() {
     static const std::vector<Group> all = {
-        {"Light", {"--visibility", "--vpls", "--bounces", "--gather", "--gather-distance", "--filter", "--point-lights", "--vpl-bound"}},
+        {"Light", {"--visibility", "--vpls", "--bounces", "--gather", "--gather-distance", "--filter", "--point-lights", "--vpl-bound", "--compensate"}},
         {"Maps", {"--map-size", "--epsilon", "--coverage", "--update", "--tree", "--arity", "--samples", "--bias", "--fusion", "--ism-points", "--append"}},
         {"Surfaces and camera", {"--brdf", "--primary", "--primary-pixels", "--exposure"}},
         {"Scene", {"--sky", "--env-lights", "--env-rotation", "--env-strength", "--animation", "--loop", "--rebuild", "--instances", "--seed"}},
