@@ -1,5 +1,5 @@
 // The hard cases of spec, section 4, each in every way that an image is made: cuts from the roots, carried and lazy ones, maps of all triangles,
-// imperfect maps, rays, no visibility, a camera that sees points, natural illumination. Where cuts
+// imperfect maps, rays, no visibility, compensated bounds, a camera that sees points, natural illumination. Where cuts
 // are carried a case plays two frames, between which its lights move. hard_cases_test.cpp has more of the same by all kinds of visibility.
 //
 // Everywhere: finite numbers, nothing negative, no validation messages. Cuts are those of a recursion on the host, partition each view's leaves
@@ -307,6 +307,30 @@ TEST_F(HardModes, visibility) {
         EXPECT_NEAR(light[3] / light[0], 1, 0.25) << "maps of all triangles";
         EXPECT_NEAR(light[5] / light[0], 1, 0.25) << "shared maps";
     });
+}
+
+// What the bound cuts off is light, and nothing but light.
+TEST_F(HardModes, compensated) {
+    each([&](const HardCase&, const Kit& kit) {
+        FrameSettings s = small(Visibility::rays);
+        s.bounces = 2;
+        const double bounded = mean(play(kit, s).images[0], "indirect");
+        s.compensate = 2;
+        EXPECT_GE(mean(play(kit, s).images[0], "indirect"), bounded * 0.999);
+    });
+}
+
+TEST_F(HardModes, a_compensated_bound_is_that_of_few_vpls) {
+    scenes::Scene scene = Kit::room().scene;
+    const scenes::Triangles triangles = scenes::flatten(scene);
+    const auto bound = [&](uint32_t vpls, uint32_t compensate) {
+        FrameSettings s = small(Visibility::rays);
+        s.vpls = vpls, s.compensate = compensate;
+        return passes::Frame(device, scene, triangles, s).vpl_bound();
+    };
+    EXPECT_EQ(bound(4 * passes::compensated_vpls, 1), bound(passes::compensated_vpls, 0));
+    EXPECT_EQ(bound(64, 1), bound(64, 0));
+    EXPECT_GT(bound(4 * passes::compensated_vpls, 0), bound(passes::compensated_vpls, 0));
 }
 
 TEST_F(HardModes, points) {

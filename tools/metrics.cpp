@@ -125,7 +125,7 @@ Metrics measure(const Image& reference, const Image& test, double tolerance, std
         for (size_t c = 0; c < 3; ++c) {
             const double a = r[c][i], b = t[c][i], d = std::abs(b - a);
             m.mse += d * d;
-            m.rel_mse += d * d / (a * a + 1e-2);
+            m.rel_mse += d * d / (a * a + rel_mse_epsilon);
             m.mae += d;
             worst = std::max(worst, d);
             clipped += a > 1;

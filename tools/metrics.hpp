@@ -20,9 +20,12 @@ struct NonFinite {
     uint64_t total() const { return nan + inf; }
 };
 
+// The square of the radiance (0.1) below which errors count as absolute rather than relative ones.
+inline constexpr double rel_mse_epsilon = 1e-2;
+
 struct Metrics {
     double mse = 0;      // mean of (t - r)^2
-    double rel_mse = 0;  // mean of (t - r)^2 / (r^2 + 1e-2)
+    double rel_mse = 0;  // mean of (t - r)^2 / (r^2 + rel_mse_epsilon)
     // -10 log10(mean of (t' - r')^2), dB, where ' clamps to [0, 1] and encodes as sRGB: radiance has no peak, a display
     // has (1), and errors count about as they are seen. Capped at 200 dB, beyond what floats resolve, so that identical
     // images have a number.

@@ -1,6 +1,7 @@
 #include "passes/compensate/compensate.hpp"
 
-#include <numbers>
+#include <map>
+#include <set>
 
 #include "engine/testing.hpp"
 #include "passes/compensate/compensate_ref.hpp"
@@ -149,6 +150,19 @@ TEST_F(CompensateTest, the_same_bits_and_another_seed_another_noise) {
     const auto once = run(test, g, {});
     EXPECT_TRUE(engine::same(once, run(test, g, {})));
     EXPECT_FALSE(engine::same(once, run(test, g, {.seed = 2})));
+}
+
+// The points of a block, of all its rays, are each element of one set once; other blocks have sets of their own.
+TEST(Compensate, blocks_have_each_point_of_a_set_of_their_own) {
+    constexpr uint32_t rays = 3, side = 3 * compensate_block;
+    std::map<uint32_t, std::multiset<uint32_t>> sets;
+    for (uint32_t y = 0; y < side; ++y)
+        for (uint32_t x = 0; x < side; ++x)
+            for (uint32_t ray = 0; ray < rays; ++ray) sets[compensate_seed(x, y, 7)].insert(compensate_index(x, y, ray));
+    std::multiset<uint32_t> all;
+    for (uint32_t i = 0; i < rays * compensate_block * compensate_block; ++i) all.insert(i);
+    EXPECT_EQ(sets.size(), 9u);
+    for (const auto& [seed, indices] : sets) EXPECT_EQ(indices, all);
 }
 
 // What the filter averages is the set that a block of pixels shares, so a patch over a plane is even after it.

@@ -43,7 +43,7 @@ std::vector<float> relative_errors(const Image& reference, const Image& test) {
     std::vector<float> out(reference.pixels());
     for (size_t i = 0; i < out.size(); ++i)
         for (const auto& [a, b] : {std::pair(r.r[i], t.r[i]), {r.g[i], t.g[i]}, {r.b[i], t.b[i]}})
-            out[i] = std::max(out[i], std::abs(b - a) / std::sqrt(a * a + 1e-2f));
+            out[i] = std::max(out[i], std::abs(b - a) / std::sqrt(a * a + float(rel_mse_epsilon)));
     return out;
 }
 

@@ -36,7 +36,7 @@ Texts preview(const std::string& scene, const Texts& texts, uint32_t width, uint
     Texts out = sized(texts, width, height, divisor);
     const auto options = read(scene, texts);
     out["--vpls"] = std::to_string(std::min(options->frame.vpls, preview_vpls));
-    for (const char* name : {"--gather-distance", "--fusion", "--coverage", "--tree", "--ism-points", "--append", "--primary", "--primary-pixels"}) out.erase(name);
+    for (const char* name : {"--gather-distance", "--fusion", "--coverage", "--tree", "--ism-points", "--append", "--compensate", "--primary", "--primary-pixels"}) out.erase(name);
     out["--gather"] = "subset:16";
     if (options->frame.visibility != passes::Visibility::none) out["--visibility"] = "manylods", out["--update"] = "incremental";
     out["--map-size"] = "16";

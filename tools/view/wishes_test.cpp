@@ -76,12 +76,13 @@ TEST(view_ladder, ends_with_the_wish) {
 TEST(view_ladder, previews_are_small_whatever_is_chosen) {
     for (const Texts& texts : {Texts{{"--visibility", "rays"}}, {{"--visibility", "none"}}, {{"--visibility", "ism"}, {"--ism-points", "7"}}, {{"--update", "lazy:3"}},
                                {{"--visibility", "megaviews"}, {"--tree", "svo:7"}}, {{"--gather", "culled:9"}, {"--gather-distance", "2"}}, {{"--coverage", "full"}},
-                               {{"--primary", "points"}, {"--primary-pixels", "2"}}, {{"--vpls", "5"}}}) {
+                               {{"--primary", "points"}, {"--primary-pixels", "2"}}, {{"--vpls", "5"}}, {{"--compensate", "9"}}}) {
         const auto rungs = ladder(cornell, texts, 640, 360, true, 4, 0);
         ASSERT_EQ(rungs.size(), 1u);
         const auto options = read(cornell, rungs[0]);
         EXPECT_EQ(options->frame.width, 160u);
         EXPECT_LE(options->frame.vpls, 256u);
+        EXPECT_EQ(options->frame.compensate, 0u);
     }
 }
 
